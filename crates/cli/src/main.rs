@@ -1,0 +1,2 @@
+//! The `meshless` command.
+fn main() {}

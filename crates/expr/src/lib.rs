@@ -1,0 +1,1 @@
+//! A small, strict expression language for fields of position and time

@@ -1,0 +1,1 @@
+//! Shapes, domains, regions and point clouds in one, two and three dimensions

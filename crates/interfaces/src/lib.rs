@@ -1,0 +1,1 @@
+//! Meshless discretisations of elliptic interface problems, one method a folder

@@ -1,0 +1,1 @@
+//! Elliptic interface problems on point clouds: scene, plan, solution

@@ -1,0 +1,1 @@
+//! Neighbour lists of point clouds: fixed and variable radius, k nearest

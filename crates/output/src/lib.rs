@@ -1,0 +1,1 @@
+//! Pictures and files of scattered fields: SVG contours and charts, VTK

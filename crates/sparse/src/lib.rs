@@ -1,0 +1,1 @@
+//! Sparse systems in difference form: assembly, direct and Krylov solvers, preconditioners

@@ -1,0 +1,1 @@
+//! Local least-squares stencils for derivatives on scattered points
