@@ -1,0 +1,64 @@
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::GeometryError;
+
+/// How nodes are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// A regular grid, divided evenly between the faces of a box.
+    Grid,
+    /// A grid whose interior nodes are moved at random by up to a quarter of the spacing along each axis.
+    Jittered,
+    /// Poisson-disk: random, with a smallest distance and without holes.
+    Irregular,
+}
+
+/// The distance between nodes that is aimed at: `s` means about `1 / s^D` nodes a unit of volume.
+#[derive(Clone)]
+pub enum Spacing<const D: usize> {
+    /// The same everywhere.
+    Uniform(f64),
+    /// A function of position; it should change by less than about its half over its own length. Irregular layout
+    /// only.
+    Graded(Arc<dyn Fn(&[f64; D]) -> f64 + Send + Sync>),
+}
+
+impl<const D: usize> Spacing<D> {
+    /// The spacing at `x`.
+    ///
+    /// # Errors
+    /// [`GeometryError::InvalidSpacing`] where it is not positive and finite.
+    pub fn at(&self, x: &[f64; D]) -> Result<f64, GeometryError> {
+        let spacing = match self {
+            Self::Uniform(s) => *s,
+            Self::Graded(f) => f(x),
+        };
+        if spacing.is_finite() && spacing > 0.0 {
+            return Ok(spacing);
+        }
+        Err(GeometryError::InvalidSpacing { at: x.to_vec(), spacing })
+    }
+}
+
+impl<const D: usize> fmt::Debug for Spacing<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Uniform(s) => f.debug_tuple("Uniform").field(s).finish(),
+            Self::Graded(_) => f.write_str("Graded"),
+        }
+    }
+}
+
+/// What [`generate`](crate::generate) is asked for.
+#[derive(Clone, Debug)]
+pub struct CloudParams<const D: usize> {
+    /// Distance between nodes.
+    pub spacing: Spacing<D>,
+    /// Arrangement of the nodes.
+    pub layout: Layout,
+    /// Seed of the random numbers; the same seed gives the same cloud, bit for bit.
+    pub seed: u64,
+    /// More nodes than this are an error, found before they are generated.
+    pub max_nodes: usize,
+}

@@ -1,0 +1,107 @@
+//! Level and gradient of a shape.
+
+use super::{Cylinder, Polygon, Shape};
+use crate::vector::{axpy, distance, norm, normalized, scale, sub};
+
+impl<const D: usize> Shape<D> {
+    /// The level at `x`: negative inside, zero on the surface. The signed distance for boxes, balls, cylinders,
+    /// polygons and half-spaces.
+    pub fn level(&self, x: &[f64; D]) -> f64 {
+        match self {
+            Self::Box(b) => b.signed_distance(x),
+            Self::Ball(b) => distance(x, b.center()) - b.radius(),
+            Self::Cylinder(c) => cylinder_level(c, x),
+            Self::Polygon(p) => p.nearest(&planar(x)).distance,
+            Self::HalfSpace(h) => h.signed_distance(x),
+            Self::LevelSet(f) => f.value(x),
+            Self::Union(parts) => parts.iter().map(|s| s.level(x)).fold(f64::INFINITY, minimum),
+            Self::Intersection(parts) => parts.iter().map(|s| s.level(x)).fold(f64::NEG_INFINITY, maximum),
+            Self::Difference(a, b) => maximum(a.level(x), -b.level(x)),
+        }
+    }
+
+    /// Gradient of the level at `x`; where it has none (edges, centres) one of its limits.
+    pub fn gradient(&self, x: &[f64; D]) -> [f64; D] {
+        match self {
+            Self::Box(b) => b.gradient(x),
+            Self::Ball(b) => {
+                normalized(&sub(x, b.center())).unwrap_or_else(|| crate::vector::axis_vector(0, 1.0))
+            }
+            Self::Cylinder(c) => cylinder_gradient(c, x),
+            Self::Polygon(p) => polygon_gradient(p, x),
+            Self::HalfSpace(h) => *h.normal(),
+            Self::LevelSet(f) => f.gradient(x),
+            Self::Union(_) | Self::Intersection(_) | Self::Difference(..) => {
+                let (leaf, subtracted) = self.active_leaf(x);
+                scale(if subtracted { -1.0 } else { 1.0 }, &leaf.gradient(x))
+            }
+        }
+    }
+
+    /// The leaf whose level is the shape's level at `x`, and whether it enters with the opposite sign.
+    pub(crate) fn active_leaf(&self, x: &[f64; D]) -> (&Self, bool) {
+        match self {
+            Self::Union(parts) => match extreme(parts, |s| s.level(x)) {
+                Some(part) => part.active_leaf(x),
+                None => (self, false),
+            },
+            Self::Intersection(parts) => match extreme(parts, |s| -s.level(x)) {
+                Some(part) => part.active_leaf(x),
+                None => (self, false),
+            },
+            Self::Difference(a, b) => {
+                if a.level(x) >= -b.level(x) {
+                    a.active_leaf(x)
+                } else {
+                    let (leaf, subtracted) = b.active_leaf(x);
+                    (leaf, !subtracted)
+                }
+            }
+            _ => (self, false),
+        }
+    }
+}
+
+/// The part with the smallest `key`; the first one of equals.
+fn extreme<const D: usize>(parts: &[Shape<D>], key: impl Fn(&Shape<D>) -> f64) -> Option<&Shape<D>> {
+    parts.iter().map(|s| (key(s), s)).reduce(|a, b| if b.0 < a.0 { b } else { a }).map(|(_, s)| s)
+}
+
+// Unlike `f64::min` and `f64::max` these keep a NaN, so that a bad level set is noticed.
+fn minimum(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}
+
+fn maximum(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
+pub(super) fn planar<const D: usize>(x: &[f64; D]) -> [f64; 2] {
+    [x[0], x[1]]
+}
+
+fn cylinder_level<const D: usize>(c: &Cylinder<D>, x: &[f64; D]) -> f64 {
+    let (mantle, cap) = c.parts(&c.frame(x));
+    if mantle > 0.0 && cap > 0.0 { norm(&[mantle, cap]) } else { mantle.max(cap) }
+}
+
+fn cylinder_gradient<const D: usize>(c: &Cylinder<D>, x: &[f64; D]) -> [f64; D] {
+    let f = c.frame(x);
+    let (mantle, cap) = c.parts(&f);
+    let axial = scale(if f.along < 0.0 { -1.0 } else { 1.0 }, c.axis());
+    if mantle > 0.0 && cap > 0.0 {
+        let d = norm(&[mantle, cap]);
+        return axpy(&scale(mantle / d, &f.outward), cap / d, &axial);
+    }
+    if mantle >= cap { f.outward } else { axial }
+}
+
+fn polygon_gradient<const D: usize>(p: &Polygon, x: &[f64; D]) -> [f64; D] {
+    let at = planar(x);
+    let nearest = p.nearest(&at);
+    let away = normalized(&sub(&at, &nearest.point)).map(|d| scale(nearest.distance.signum(), &d));
+    // On the polygon itself, to rounding, the direction away from it is noise.
+    let on_edge = nearest.distance.abs() <= 1e3 * f64::EPSILON * (at[0].abs() + at[1].abs());
+    let g = if on_edge { nearest.edge_normal } else { away.unwrap_or(nearest.edge_normal) };
+    std::array::from_fn(|i| g[i])
+}
