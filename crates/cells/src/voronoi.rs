@@ -1,0 +1,288 @@
+//! The construction of a cell: start from a box, clip by planes, then by bisectors from near to far, then by curves.
+
+use crate::body::{Body, Piece, Source, resize};
+use crate::cell::{Cell, CellFace, FaceKind};
+use crate::container::Container;
+use crate::error::CellError;
+use crate::interval::Interval;
+use crate::polygon::Polygon;
+use crate::polyhedron::Polyhedron;
+
+/// Distance by which a node may lie beyond the boundary, as a fraction of the radius of its cell. Boundary nodes come
+/// from projections, which end some digits before round-off; a cell that is off by more than this has another shape.
+const OUTSIDE_TOLERANCE: f64 = 1e-3;
+
+/// Distance, relative to the coordinates' magnitude, up to which a candidate coincides with the node: a few units in the
+/// last place, below which the direction to the candidate means nothing.
+const COINCIDENCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
+
+/// Size of a face, relative to the cell's radius to the power D-1, up to which it is left out. Faces of regular grids
+/// whose bisectors touch an edge of the cell come out with a width of some 1e-16.
+const FACE_TOLERANCE: f64 = 1e-14;
+
+/// Volume, relative to the cell's radius to the power D, below which a cell is degenerate: round-off of the volume.
+const VOLUME_TOLERANCE: f64 = 1e-15;
+
+/// Half-width of the box to start from, in units of the searched radius. Whatever lies beyond one half of that radius is
+/// unknown; the excess lets a cell that reaches the box be told from one that just fits.
+const START_HALF_WIDTH: f64 = 0.505;
+
+/// Margin about the domain's bounding box, as a fraction of its extent: the box must not touch a curved face that it
+/// encloses tightly.
+const BOX_MARGIN: f64 = 0.25;
+
+/// Excess of the reach over the searched radius that is put down to round-off.
+const REACH_TOLERANCE: f64 = 1e-12;
+
+/// Buffers for [`voronoi_cell`], to be kept from call to call; one for each thread.
+#[derive(Debug, Default)]
+pub struct CellScratch {
+    /// Squared distance and place in the list of candidates, near to far.
+    order: Vec<(f64, u32)>,
+    pieces: Vec<Piece>,
+    interval: Interval,
+    polygon: Polygon,
+    polyhedron: Polyhedron,
+}
+
+/// The Voronoi cell of the node at `center` among `candidates`, clipped to `container`, for `D` = 1, 2 or 3.
+///
+/// `candidates` are the other nodes nearby, with the numbers that the cell's faces are to carry, in any order: the cell
+/// does not depend on it. All nodes within the distance `searched` of the centre must be among them (infinity if all
+/// nodes are). The node may lie on the boundary; its cell is then what lies on the inner side.
+///
+/// The volume is that of the divergence theorem (for an interior cell `1/(2D) sum area * distance`, Kraus et al. 2022,
+/// below eq. 19). Faces between neighbours agree, seen from either side, to round-off.
+///
+/// # Errors
+/// [`CellError::Incomplete`] if nodes beyond `searched` might touch the cell: search farther and try again. The other
+/// errors say what is wrong with the node, a candidate or the domain.
+pub fn voronoi_cell<const D: usize>(
+    center: &[f64; D],
+    candidates: &[(u32, [f64; D])],
+    searched: f64,
+    container: &Container<D>,
+    scratch: &mut CellScratch,
+) -> Result<Cell<D>, CellError> {
+    const { assert!(D >= 1 && D <= 3, "cells exist in one, two and three dimensions") };
+    container.check()?;
+    if searched.is_nan() || searched < 0.0 {
+        return Err(CellError::InvalidRadius { searched });
+    }
+    let CellScratch { order, pieces, interval, polygon, polyhedron } = scratch;
+    sort_candidates(center, candidates, order)?;
+    let mut body = match D {
+        1 => Body::Interval(interval),
+        2 => Body::Polygon(polygon),
+        _ => Body::Polyhedron(polyhedron),
+    };
+    let (lo, hi) = start_box(center, searched, container)?;
+    body.reset(&lo, &hi);
+    clip_by_planes(center, container, &mut body)?;
+    clip_by_candidates(center, candidates, order, &mut body)?;
+    cut_by_curves(center, container, &mut body)?;
+    let reach = 2.0 * body.radius();
+    if reach > searched * (1.0 + REACH_TOLERANCE) {
+        return Err(CellError::Incomplete { center: center.to_vec(), searched, needed: reach });
+    }
+    pieces.clear();
+    let measure = body.measure(pieces);
+    let radius = 0.5 * reach;
+    if !(measure.volume > VOLUME_TOLERANCE * power::<D>(radius) * radius) {
+        return Err(CellError::Degenerate { center: center.to_vec(), volume: measure.volume, radius });
+    }
+    let faces =
+        collect_faces(center, candidates, order, container, pieces, FACE_TOLERANCE * power::<D>(radius))?;
+    let centroid = std::array::from_fn(|axis| center[axis] + measure.moment[axis] / measure.volume);
+    Ok(Cell { volume: measure.volume, centroid, faces, reach })
+}
+
+/// `length^(D-1)`.
+fn power<const D: usize>(length: f64) -> f64 {
+    (1..D).map(|_| length).product()
+}
+
+/// Sorts the candidates by distance, then by position, so that neither their order nor their numbers matter.
+fn sort_candidates<const D: usize>(
+    center: &[f64; D],
+    candidates: &[(u32, [f64; D])],
+    order: &mut Vec<(f64, u32)>,
+) -> Result<(), CellError> {
+    if !center.iter().all(|x| x.is_finite()) {
+        return Err(CellError::CenterNotFinite { center: center.to_vec() });
+    }
+    let magnitude = center.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let coincident = (COINCIDENCE_TOLERANCE * magnitude).powi(2);
+    order.clear();
+    for (place, (index, position)) in (0_u32..).zip(candidates) {
+        let squared = (0..D).map(|axis| (position[axis] - center[axis]).powi(2)).sum::<f64>();
+        if !squared.is_finite() {
+            return Err(CellError::CandidateNotFinite { index: *index, position: position.to_vec() });
+        }
+        if squared <= coincident {
+            return Err(CellError::Duplicate { index: *index, center: center.to_vec() });
+        }
+        order.push((squared, place));
+    }
+    order.sort_unstable_by(|a, b| {
+        a.0.total_cmp(&b.0).then_with(|| {
+            let (a, b) = (&candidates[a.1 as usize].1, &candidates[b.1 as usize].1);
+            a.iter()
+                .zip(b)
+                .map(|(x, y)| x.total_cmp(y))
+                .find(|o| o.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
+        })
+    });
+    Ok(())
+}
+
+/// The box to start from, relative to the centre.
+fn start_box<const D: usize>(
+    center: &[f64; D],
+    searched: f64,
+    container: &Container<D>,
+) -> Result<([f64; D], [f64; D]), CellError> {
+    let extent = (0..D).map(|axis| container.max[axis] - container.min[axis]).fold(0.0, f64::max);
+    let margin = BOX_MARGIN * extent;
+    let half_width = START_HALF_WIDTH * searched;
+    let lo: [f64; D] =
+        std::array::from_fn(|axis| (container.min[axis] - margin - center[axis]).max(-half_width));
+    let hi: [f64; D] =
+        std::array::from_fn(|axis| (container.max[axis] + margin - center[axis]).min(half_width));
+    if searched == 0.0 {
+        return Err(CellError::Incomplete { center: center.to_vec(), searched, needed: extent });
+    }
+    if (0..D).any(|axis| lo[axis] >= 0.0 || hi[axis] <= 0.0) {
+        return Err(CellError::OutsideBox { center: center.to_vec() });
+    }
+    Ok((lo, hi))
+}
+
+fn clip_by_planes<const D: usize>(
+    center: &[f64; D],
+    container: &Container<D>,
+    body: &mut Body,
+) -> Result<(), CellError> {
+    for (k, plane) in (0_u32..).zip(container.planes) {
+        let height = plane.normal.iter().zip(center).map(|(n, x)| n * x).sum::<f64>() - plane.offset;
+        let radius = body.radius();
+        if height > OUTSIDE_TOLERANCE * radius {
+            return Err(CellError::OutsideDomain {
+                center: center.to_vec(),
+                face: plane.face,
+                distance: height,
+            });
+        }
+        body.clip(&plane.normal, -height, Source::Plane(k));
+        if body.is_empty() {
+            return Err(CellError::OutsideDomain {
+                center: center.to_vec(),
+                face: plane.face,
+                distance: height,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Clips by the bisectors with the candidates, from near to far, until the next one is too far away to matter.
+fn clip_by_candidates<const D: usize>(
+    center: &[f64; D],
+    candidates: &[(u32, [f64; D])],
+    order: &[(f64, u32)],
+    body: &mut Body,
+) -> Result<(), CellError> {
+    let mut reach = 2.0 * body.radius();
+    let mut previous: Option<&(u32, [f64; D])> = None;
+    for (rank, &(squared, place)) in (0_u32..).zip(order) {
+        if squared > reach * reach {
+            break;
+        }
+        let candidate = &candidates[place as usize];
+        if let Some(twin) = previous.filter(|previous| previous.1 == candidate.1) {
+            let (first, second) = (twin.0.min(candidate.0), twin.0.max(candidate.0));
+            return Err(CellError::DuplicateCandidates { first, second, position: candidate.1.to_vec() });
+        }
+        previous = Some(candidate);
+        let normal: [f64; D] = std::array::from_fn(|axis| candidate.1[axis] - center[axis]);
+        if body.clip(&normal, 0.5 * squared, Source::Candidate(rank)) {
+            reach = 2.0 * body.radius();
+        }
+        if body.is_empty() {
+            // Only a node that lies outside loses its whole cell to the others.
+            return Err(CellError::Degenerate {
+                center: center.to_vec(),
+                volume: 0.0,
+                radius: squared.sqrt(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn cut_by_curves<const D: usize>(
+    center: &[f64; D],
+    container: &Container<D>,
+    body: &mut Body,
+) -> Result<(), CellError> {
+    for (k, cut) in (0_u32..).zip(container.cuts) {
+        let face = cut.face;
+        let undefined = || CellError::LevelNotANumber { face, center: center.to_vec() };
+        let level = |x: &[f64; D]| (cut.level)(&std::array::from_fn(|axis| center[axis] + x[axis]));
+        let at_center = (cut.level)(center);
+        if at_center.is_nan() {
+            return Err(undefined());
+        }
+        let largest = body.cut(level, Source::Cut(k)).ok_or_else(undefined)?;
+        if at_center > OUTSIDE_TOLERANCE * largest {
+            return Err(CellError::OutsideDomain { center: center.to_vec(), face, distance: at_center });
+        }
+        if body.is_empty() {
+            return Err(CellError::Unresolved { face, center: center.to_vec() });
+        }
+    }
+    Ok(())
+}
+
+/// Merges the pieces that come from the same bisector, plane or curve, and drops those without size.
+fn collect_faces<const D: usize>(
+    center: &[f64; D],
+    candidates: &[(u32, [f64; D])],
+    order: &[(f64, u32)],
+    container: &Container<D>,
+    pieces: &mut [Piece],
+    smallest: f64,
+) -> Result<Vec<CellFace<D>>, CellError> {
+    pieces.sort_by_key(|piece| piece.source);
+    let mut faces = Vec::with_capacity(pieces.len());
+    for group in pieces.chunk_by(|a, b| a.source == b.source) {
+        let (mut vector, mut weight, mut weighted) = ([0.0; 3], 0.0, [0.0; 3]);
+        for piece in group {
+            let size = norm(&piece.area);
+            weight += size;
+            for axis in 0..3 {
+                vector[axis] += piece.area[axis];
+                weighted[axis] += size * piece.centroid[axis];
+            }
+        }
+        let area = norm(&vector);
+        if area <= smallest {
+            continue;
+        }
+        let kind = match group[0].source {
+            Source::Candidate(rank) => FaceKind::Neighbor(candidates[order[rank as usize].1 as usize].0),
+            Source::Plane(k) => FaceKind::Boundary(container.planes[k as usize].face),
+            Source::Cut(k) => FaceKind::Boundary(container.cuts[k as usize].face),
+            Source::Start => return Err(CellError::OpenContainer { center: center.to_vec() }),
+        };
+        let normal = resize(&vector.map(|x| x / area));
+        let centroid = std::array::from_fn(|axis| center[axis] + weighted[axis] / weight);
+        faces.push(CellFace { kind, area, normal, centroid });
+    }
+    Ok(faces)
+}
+
+fn norm(x: &[f64; 3]) -> f64 {
+    (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]).sqrt()
+}
