@@ -46,7 +46,7 @@ impl Expr {
 
     /// The value, if no variable occurs; it may be infinite or NaN, as of `1/0` or `log(-1)`.
     pub fn as_constant(&self) -> Option<f64> {
-        self.program.last_variable().is_none().then(|| self.root.eval(&[]))
+        self.program.last_variable().is_none().then(|| self.program.eval(&[]))
     }
 
     /// Whether the variable occurs (which does not mean that the value changes with it: `x - x`).
@@ -60,7 +60,7 @@ impl Expr {
     ///
     /// If a variable occurs that has no value.
     pub fn eval(&self, values: &[f64]) -> f64 {
-        self.root.eval(values)
+        self.program.eval(values)
     }
 
     /// Values at many points: variable `i` is coordinate `i` for `i < D`, else `extra[i - D]`, the same at all points.

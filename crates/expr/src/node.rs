@@ -1,4 +1,4 @@
-//! The tree that the parser builds, and its direct evaluation.
+//! The tree that the parser builds.
 
 use std::sync::Arc;
 
@@ -15,26 +15,6 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    /// Value at one point. Only the branch of `if` that is taken is evaluated.
-    pub(crate) fn eval(&self, values: &[f64]) -> f64 {
-        match self {
-            Self::Constant(value) => *value,
-            Self::Variable(index) => values[*index],
-            Self::Unary(op, a) => op.apply(a.eval(values)),
-            Self::Binary(op, a, b) => op.apply(a.eval(values), b.eval(values)),
-            Self::If(condition, a, b) => {
-                let condition = condition.eval(values);
-                if condition.is_nan() {
-                    f64::NAN
-                } else if condition != 0.0 {
-                    a.eval(values)
-                } else {
-                    b.eval(values)
-                }
-            }
-        }
-    }
-
     pub(crate) fn constant(&self) -> Option<f64> {
         if let Self::Constant(value) = self { Some(*value) } else { None }
     }

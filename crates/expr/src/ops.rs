@@ -189,8 +189,13 @@ pub(crate) fn multiplied_power(b: f64) -> Option<i32> {
 /// `a^n` by repeated squaring.
 #[inline]
 pub(crate) fn powi(a: f64, n: i32) -> f64 {
-    if n == 0 && a.is_nan() {
-        return a;
+    match n {
+        0 if a.is_nan() => return a,
+        // As the loop multiplies, without its branches.
+        1 => return a,
+        2 => return a * a,
+        3 => return a * (a * a),
+        _ => {}
     }
     let mut power = 1.0;
     let mut square = a;

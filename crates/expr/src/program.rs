@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::node::Node;
-use crate::ops::{Binary, Unary};
+use crate::ops::{Binary, Unary, select};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Operand {
@@ -40,6 +40,35 @@ impl Program {
         let mut numbering = Numbering::default();
         let result = numbering.visit(root);
         allocate(&numbering.operations, result)
+    }
+
+    /// Value at one point.
+    pub(crate) fn eval(&self, values: &[f64]) -> f64 {
+        /// Registers on the stack; few expressions need more than ten.
+        const NEARBY: usize = 16;
+        if self.registers <= NEARBY {
+            self.eval_in(values, &mut [0.0; NEARBY])
+        } else {
+            self.eval_in(values, &mut vec![0.0; self.registers])
+        }
+    }
+
+    fn eval_in(&self, values: &[f64], registers: &mut [f64]) -> f64 {
+        let fetch = |operand: Operand, registers: &[f64]| match operand {
+            Operand::Constant(value) => value,
+            Operand::Variable(index) => values[index],
+            Operand::Register(index) => registers[index],
+        };
+        for instruction in &self.code {
+            registers[instruction.target] = match instruction.operation {
+                Operation::Unary(op, a) => op.apply(fetch(a, registers)),
+                Operation::Binary(op, a, b) => op.apply(fetch(a, registers), fetch(b, registers)),
+                Operation::Select(c, a, b) => {
+                    select(fetch(c, registers), fetch(a, registers), fetch(b, registers))
+                }
+            };
+        }
+        fetch(self.result, registers)
     }
 
     /// Whether any instruction reads the variable.
