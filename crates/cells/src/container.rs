@@ -64,7 +64,7 @@ impl<const D: usize> Container<'_, D> {
         }
         for (plane, &Plane { normal, offset, face }) in self.planes.iter().enumerate() {
             let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-            if !offset.is_finite() || !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+            if !offset.is_finite() || length.is_nan() || (length - 1.0).abs() > UNIT_TOLERANCE {
                 return Err(CellError::InvalidPlane { plane, face, length, offset });
             }
         }

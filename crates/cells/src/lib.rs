@@ -34,6 +34,7 @@ mod body;
 mod cell;
 mod container;
 mod error;
+mod faces;
 mod interval;
 mod polygon;
 mod polyhedron;

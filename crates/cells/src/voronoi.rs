@@ -1,9 +1,10 @@
 //! The construction of a cell: start from a box, clip by planes, then by bisectors from near to far, then by curves.
 
-use crate::body::{Body, Piece, Source, resize};
-use crate::cell::{Cell, CellFace, FaceKind};
+use crate::body::{Body, Piece, Source};
+use crate::cell::Cell;
 use crate::container::Container;
 use crate::error::CellError;
+use crate::faces::collect_faces;
 use crate::interval::Interval;
 use crate::polygon::Polygon;
 use crate::polyhedron::Polyhedron;
@@ -15,10 +16,6 @@ const OUTSIDE_TOLERANCE: f64 = 1e-3;
 /// Distance, relative to the coordinates' magnitude, up to which a candidate coincides with the node: a few units in the
 /// last place, below which the direction to the candidate means nothing.
 const COINCIDENCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
-
-/// Size of a face, relative to the cell's radius to the power D-1, up to which it is left out. Faces of regular grids
-/// whose bisectors touch an edge of the cell come out with a width of some 1e-16.
-const FACE_TOLERANCE: f64 = 1e-14;
 
 /// Volume, relative to the cell's radius to the power D, below which a cell is degenerate: round-off of the volume.
 const VOLUME_TOLERANCE: f64 = 1e-15;
@@ -88,11 +85,10 @@ pub fn voronoi_cell<const D: usize>(
     pieces.clear();
     let measure = body.measure(pieces);
     let radius = 0.5 * reach;
-    if !(measure.volume > VOLUME_TOLERANCE * power::<D>(radius) * radius) {
+    if measure.volume.is_nan() || measure.volume <= VOLUME_TOLERANCE * power::<D>(radius) * radius {
         return Err(CellError::Degenerate { center: center.to_vec(), volume: measure.volume, radius });
     }
-    let faces =
-        collect_faces(center, candidates, order, container, pieces, FACE_TOLERANCE * power::<D>(radius))?;
+    let faces = collect_faces(center, candidates, order, container, pieces, power::<D>(radius))?;
     let centroid = std::array::from_fn(|axis| center[axis] + measure.moment[axis] / measure.volume);
     Ok(Cell { volume: measure.volume, centroid, faces, reach })
 }
@@ -243,46 +239,4 @@ fn cut_by_curves<const D: usize>(
         }
     }
     Ok(())
-}
-
-/// Merges the pieces that come from the same bisector, plane or curve, and drops those without size.
-fn collect_faces<const D: usize>(
-    center: &[f64; D],
-    candidates: &[(u32, [f64; D])],
-    order: &[(f64, u32)],
-    container: &Container<D>,
-    pieces: &mut [Piece],
-    smallest: f64,
-) -> Result<Vec<CellFace<D>>, CellError> {
-    pieces.sort_by_key(|piece| piece.source);
-    let mut faces = Vec::with_capacity(pieces.len());
-    for group in pieces.chunk_by(|a, b| a.source == b.source) {
-        let (mut vector, mut weight, mut weighted) = ([0.0; 3], 0.0, [0.0; 3]);
-        for piece in group {
-            let size = norm(&piece.area);
-            weight += size;
-            for axis in 0..3 {
-                vector[axis] += piece.area[axis];
-                weighted[axis] += size * piece.centroid[axis];
-            }
-        }
-        let area = norm(&vector);
-        if area <= smallest {
-            continue;
-        }
-        let kind = match group[0].source {
-            Source::Candidate(rank) => FaceKind::Neighbor(candidates[order[rank as usize].1 as usize].0),
-            Source::Plane(k) => FaceKind::Boundary(container.planes[k as usize].face),
-            Source::Cut(k) => FaceKind::Boundary(container.cuts[k as usize].face),
-            Source::Start => return Err(CellError::OpenContainer { center: center.to_vec() }),
-        };
-        let normal = resize(&vector.map(|x| x / area));
-        let centroid = std::array::from_fn(|axis| center[axis] + weighted[axis] / weight);
-        faces.push(CellFace { kind, area, normal, centroid });
-    }
-    Ok(faces)
-}
-
-fn norm(x: &[f64; 3]) -> f64 {
-    (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]).sqrt()
 }
