@@ -74,6 +74,16 @@ fn only_the_branch_that_is_taken_matters() {
     assert_eq!(e.derivative(0).eval(&[-4.0]), 0.0);
 }
 
+/// A value used twice by one operation must not free its register twice.
+#[test]
+fn repeated_subexpressions_are_computed_once_and_kept() {
+    let e =
+        Expr::parse("sin(x)*sin(x) + (cos(x) + tan(x))*(cos(x) - tan(x)) - exp(x)", &["x"]).expect("valid");
+    let x: f64 = 0.3;
+    let direct = x.sin() * x.sin() + (x.cos() + x.tan()) * (x.cos() - x.tan()) - x.exp();
+    assert_eq!(e.eval(&[x]), direct);
+}
+
 #[test]
 fn a_nan_is_never_hidden() {
     for text in
