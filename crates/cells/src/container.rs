@@ -23,7 +23,9 @@ pub struct Plane<const D: usize> {
 ///
 /// The level set has to be continuous; it need not be a distance. It is evaluated at the vertices of the cell and on
 /// the edges whose ends differ in sign. A part of the boundary that crosses no edge, or that crosses one twice, is
-/// missed: the domain has to be resolved by the nodes.
+/// missed: the domain has to be resolved by the nodes. Where several parts of a cell lie inside, they are joined by
+/// chords (2-D) or by straight edges across the faces (3-D), as the corners of a cell that pokes through a boundary
+/// are cut off one by one. The volume of the domain is met with an error of `O(h^2)`.
 #[derive(Clone, Copy)]
 pub struct Cut<'a, const D: usize> {
     /// Level set, negative inside the domain.
