@@ -62,7 +62,9 @@ impl<const D: usize> Domain<D> {
                 .ok_or_else(|| GeometryError::domain("the shape lies outside of the bounds"))?,
             (Some(a), None) | (None, Some(a)) => a,
             (None, None) => {
-                return Err(GeometryError::domain("a level set, half-space or endless cylinder needs bounds"));
+                return Err(GeometryError::domain(
+                    "a level set, half-space or endless cylinder needs bounds",
+                ));
             }
         };
         Aabb::new(bounds.min, bounds.max)?;

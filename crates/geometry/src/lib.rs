@@ -1,15 +1,20 @@
 //! Shapes, domains, regions and point clouds in one, two and three dimensions.
 
 mod aabb;
+mod boundary;
+mod cells;
 mod cloud;
 mod domain;
 mod error;
 mod level_set;
+mod morton;
 mod newton;
 mod projection;
 mod quasi_random;
+mod random;
 mod region;
 mod shape;
+mod spatial_hash;
 mod vector;
 
 pub use aabb::Aabb;

@@ -24,6 +24,12 @@ impl<const D: usize> Kronecker<D> {
         });
         Self { bounds: *bounds, alpha, state: [0.5; D] }
     }
+
+    /// The sequence from its `n`-th point on.
+    pub(crate) fn starting_at(mut self, n: usize) -> Self {
+        self.state = self.alpha.map(|a| (0.5 + n as f64 * a).fract());
+        self
+    }
 }
 
 impl<const D: usize> Iterator for Kronecker<D> {

@@ -47,7 +47,7 @@ pub(super) fn check_size<const D: usize>(
     Ok(())
 }
 
-pub(super) fn too_many<const D: usize>(estimate: f64, limit: usize) -> GeometryError {
+pub(crate) fn too_many<const D: usize>(estimate: f64, limit: usize) -> GeometryError {
     // A little more than the ratio asks for, because estimates are estimates.
     let factor = 1.05 * (estimate / limit.max(1) as f64).powf(1.0 / D as f64);
     GeometryError::TooManyNodes { estimate, limit, factor }

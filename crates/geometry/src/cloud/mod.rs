@@ -1,12 +1,16 @@
 //! Point clouds: what they are, how they are asked for, and how good they are.
 
 mod estimate;
+mod front;
 mod generate;
+mod lattice;
+mod line;
 mod params;
 mod quality;
 mod validate;
 
 pub use estimate::estimate_nodes;
+pub(crate) use estimate::too_many;
 pub use generate::generate;
 pub use params::{CloudParams, Layout, Spacing};
 pub use quality::{CloudQuality, quality};

@@ -9,8 +9,6 @@ use std::fmt;
 use std::sync::Arc;
 
 pub use polygon::Polygon;
-pub(crate) use polygon::cross;
-pub(crate) use primitives::any_normal;
 pub use primitives::{Ball, Cylinder, HalfSpace};
 
 use crate::aabb::Aabb;
@@ -116,6 +114,11 @@ impl<const D: usize> Shape<D> {
         let mut found = Vec::new();
         self.collect_leaves(false, &mut found);
         found
+    }
+
+    /// Whether the level is the signed distance everywhere.
+    pub(crate) fn is_distance(&self) -> bool {
+        !matches!(self, Self::LevelSet(_) | Self::Union(_) | Self::Intersection(_) | Self::Difference(..))
     }
 
     fn collect_leaves<'a>(&'a self, subtracted: bool, found: &mut Vec<(&'a Self, bool)>) {

@@ -1,0 +1,23 @@
+use crate::aabb::Aabb;
+
+/// Order of the points along the Morton (Z) curve through their bounding box: neighbours in space are mostly
+/// neighbours in memory. Points in the same cell of the curve keep their order.
+pub(crate) fn morton_order<const D: usize>(points: &[[f64; D]], bounds: &Aabb<D>) -> Vec<u32> {
+    let bits = 63 / D as u32;
+    let bits = bits.min(31);
+    let cells = (1_u64 << bits) as f64;
+    let longest = bounds.lengths().iter().fold(0.0_f64, |a, &b| a.max(b));
+    let key = |x: &[f64; D]| {
+        let mut key = 0_u64;
+        for axis in 0..D {
+            let cell = (((x[axis] - bounds.min[axis]) / longest * cells) as u64).min((1 << bits) - 1);
+            for bit in 0..bits {
+                key |= (cell >> bit & 1) << (bit as usize * D + axis);
+            }
+        }
+        key
+    };
+    let mut order: Vec<(u64, u32)> = points.iter().enumerate().map(|(i, x)| (key(x), i as u32)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, i)| i).collect()
+}
