@@ -1,0 +1,4 @@
+//! Not built yet.
+pub(crate) fn run(_arguments: &[String]) -> std::process::ExitCode {
+    std::process::ExitCode::FAILURE
+}
