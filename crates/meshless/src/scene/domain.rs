@@ -1,0 +1,73 @@
+//! `[domain]`, `[points]` and `[[holes]]`.
+
+use std::collections::HashSet;
+
+use super::error::SceneError;
+use super::reader::Table;
+use super::shapes::{bounds, keys_with_shape, refuse_future_shapes, required_shape};
+use super::spec::{ALL_FACES, BOX_FACES, DomainSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec};
+
+/// Seed of the random numbers, unless the scene gives one.
+const DEFAULT_SEED: u64 = 1;
+
+pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
+    let table = root.require("domain")?.table()?;
+    refuse_future_shapes(&table)?;
+    table.allow(&keys_with_shape(&["bounds"]))?;
+    let shape = required_shape(&table)?;
+    let bounds = match table.get("bounds") {
+        None if shape.is_bounded() => None,
+        None => {
+            let help = "the shape does not end by itself: give a box that holds it, \
+                        bounds = { min = […], max = […] }";
+            return Err(table.missing("bounds", help));
+        }
+        Some(value) if shape.is_bounded() => {
+            return Err(value.error("the shape ends by itself and needs no bounds", "remove the key"));
+        }
+        Some(value) => Some(bounds(&value)?),
+    };
+    Ok(DomainSpec { shape, bounds, place: table.place })
+}
+
+pub(super) fn points(root: &Table<'_>) -> Result<PointsSpec, SceneError> {
+    const LAYOUTS: [(&str, LayoutName); 3] = [
+        ("grid", LayoutName::Grid),
+        ("jittered", LayoutName::Jittered),
+        ("irregular", LayoutName::Irregular),
+    ];
+    let table = root.require("points")?.table()?;
+    table.allow(&["spacing", "layout", "seed"])?;
+    Ok(PointsSpec {
+        spacing: table.require("spacing")?.expression()?.check_positive()?,
+        layout: match table.get("layout") {
+            Some(value) => value.one_of(&LAYOUTS)?,
+            None => LayoutName::Irregular,
+        },
+        seed: match table.get("seed") {
+            Some(value) => value.integer(0, u64::MAX)?,
+            None => DEFAULT_SEED,
+        },
+        place: table.place,
+    })
+}
+
+pub(super) fn holes(root: &Table<'_>) -> Result<Vec<HoleSpec>, SceneError> {
+    let mut holes = Vec::new();
+    let mut names = HashSet::new();
+    for table in root.tables("holes")? {
+        refuse_future_shapes(&table)?;
+        table.allow(&keys_with_shape(&["name"]))?;
+        let value = table.require("name")?;
+        let name = value.name()?;
+        if BOX_FACES.contains(&name.as_str()) || [OUTER_FACE, ALL_FACES].contains(&name.as_str()) {
+            let help = "the hole's surface is a face of that name, so it needs one of its own";
+            return Err(value.error(format!("\"{name}\" is the name of a face"), help));
+        }
+        if !names.insert(name.clone()) {
+            return Err(value.error(format!("there is already a hole \"{name}\""), "names must differ"));
+        }
+        holes.push(HoleSpec { name, shape: required_shape(&table)?, place: table.place });
+    }
+    Ok(holes)
+}

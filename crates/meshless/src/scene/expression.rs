@@ -1,0 +1,124 @@
+//! Expressions in a scene.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use meshless_expr::{Expr, ParseError};
+
+use super::error::SceneError;
+use super::reader::Value;
+use super::source::{Place, Source};
+
+/// Variables of an expression: as many as the scene has dimensions.
+const VARIABLES: [&str; 3] = ["x", "y", "z"];
+
+/// An expression of position, or a number, with its place in the file.
+#[derive(Debug, Clone)]
+pub struct ExprField {
+    /// As the scene has it.
+    pub text: String,
+    /// Parsed; its variables are the coordinates. Finite where it is constant.
+    pub expr: Expr,
+    /// The value in the file.
+    pub place: Place,
+}
+
+impl ExprField {
+    /// An expression from outside of the file, such as a command-line option, which errors then name.
+    ///
+    /// # Errors
+    ///
+    /// If the text does not parse or is a constant that is not finite.
+    pub fn from_option(option: &str, text: &str, dimension: usize) -> Result<Self, SceneError> {
+        let place = Place::new(&Arc::new(Source::new("command line", text)), option, 0..text.len());
+        parse(text, place, dimension, Some(0))
+    }
+
+    /// The value, if the expression is constant and therefore finite.
+    pub fn as_constant(&self) -> Option<f64> {
+        self.expr.as_constant()
+    }
+
+    /// Positive where it is constant.
+    pub(super) fn check_positive(self) -> Result<Self, SceneError> {
+        match self.as_constant() {
+            Some(value) if value <= 0.0 => {
+                Err(self.place.error(format!("expected a positive value, found {value}"), ""))
+            }
+            _ => Ok(self),
+        }
+    }
+}
+
+impl Value<'_> {
+    /// A number, or an expression in quotes.
+    pub(super) fn expression(&self) -> Result<ExprField, SceneError> {
+        if let Some(number) = self.as_number() {
+            let text = self.place.text().to_owned();
+            return Ok(ExprField { text, expr: Expr::constant(number?), place: self.place.clone() });
+        }
+        let Some(text) = self.as_text() else {
+            let help = "write a number, or an expression in quotes";
+            return Err(self.expected("a number or an expression", help));
+        };
+        parse(text, self.place.clone(), self.dimension, content_offset(self.place.text(), text))
+    }
+}
+
+/// `offset` is where the text starts within the place; `None`, if its bytes are not those of the file.
+fn parse(text: &str, place: Place, dimension: usize, offset: Option<usize>) -> Result<ExprField, SceneError> {
+    let expr = Expr::parse(text, &VARIABLES[..dimension]).map_err(|error| {
+        let ParseError { span, message, help } = error;
+        let place = match offset {
+            Some(offset) => place.at(shift(&span, place.span.start + offset)),
+            None => place.clone(),
+        };
+        place.error(message, help.unwrap_or_default())
+    })?;
+    if let Some(value) = expr.as_constant().filter(|value| !value.is_finite()) {
+        return Err(place.error(format!("expected a finite value, found {value}"), ""));
+    }
+    Ok(ExprField { text: text.to_owned(), expr, place })
+}
+
+fn shift(span: &Range<usize>, by: usize) -> Range<usize> {
+    span.start + by..span.end + by
+}
+
+/// Where the content of a quoted string starts, if the string stands in the file as it is, without escapes.
+fn content_offset(quoted: &str, content: &str) -> Option<usize> {
+    let quote = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quote| quoted.starts_with(quote))?;
+    let inner = quoted.strip_prefix(quote)?.strip_suffix(quote)?;
+    // A line break right after three quotes does not belong to the string.
+    let skipped = if quote.len() == 1 || inner == content {
+        0
+    } else {
+        inner.strip_prefix("\r\n").map_or(1, |_| 2).min(inner.len())
+    };
+    (inner.get(skipped..)? == content).then_some(quote.len() + skipped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_content_of_strings_is_found() {
+        assert_eq!(content_offset("\"x + 1\"", "x + 1"), Some(1));
+        assert_eq!(content_offset("'x + 1'", "x + 1"), Some(1));
+        assert_eq!(content_offset("\"\"\"x\"\"\"", "x"), Some(3));
+        assert_eq!(content_offset("'''\nx'''", "x"), Some(4));
+        assert_eq!(content_offset("'''\r\nx'''", "x"), Some(5));
+        assert_eq!(content_offset("\"\\u0078\"", "x"), None);
+        assert_eq!(content_offset("\"\"", ""), Some(1));
+    }
+
+    #[test]
+    fn options_of_the_command_line_are_named_in_errors() {
+        let error = ExprField::from_option("--spacing", "0.1*z", 2).expect_err("z in 2-D");
+        assert_eq!((error.file.as_str(), error.line, error.column), ("command line", 1, 5));
+        assert_eq!(error.key, "--spacing");
+        let field = ExprField::from_option("--spacing", "0.1", 2).expect("valid");
+        assert_eq!(field.as_constant(), Some(0.1));
+    }
+}

@@ -1,0 +1,195 @@
+//! `[method]`: names, and which options belong to which method.
+
+use std::str::FromStr;
+
+use meshless_expr::nearest_name;
+
+use super::error::SceneError;
+use super::reader::{Table, Value};
+use super::spec::{MethodName, MethodOptions, MethodSpec, SolverName};
+
+/// Lowest and highest polynomial degree of stencils.
+const ORDERS: [u64; 2] = [2, 8];
+
+/// Most smoothing cycles; the diffusivity is flat long before.
+const MAX_SMOOTHING: u64 = 100;
+
+/// Methods by name.
+const METHODS: [(&str, MethodName); 5] = [
+    ("auto", MethodName::Auto),
+    ("gfdm-classical", MethodName::GfdmClassical),
+    ("gfdm-conservative", MethodName::GfdmConservative),
+    ("gfdm-positive", MethodName::GfdmPositive),
+    ("gfdm-hybrid", MethodName::GfdmHybrid),
+];
+
+/// Methods that are recognised and not built.
+const FUTURE_METHODS: [&str; 6] = [
+    "particle-difference",
+    "particle-difference-extended",
+    "immersed-interface",
+    "surface-reaction",
+    "sharp",
+    "free-space",
+];
+
+/// Solvers by name.
+const SOLVERS: [(&str, SolverName); 5] = [
+    ("auto", SolverName::Auto),
+    ("direct", SolverName::Direct),
+    ("bicgstab", SolverName::BiCgStab),
+    ("gmres", SolverName::Gmres),
+    ("multigrid", SolverName::Multigrid),
+];
+
+/// Methods with stencils in strong form.
+const STRONG: &[MethodName] = &[MethodName::GfdmClassical, MethodName::GfdmPositive, MethodName::GfdmHybrid];
+/// Methods that choose their conservative nodes.
+const SELECTING: &[MethodName] = &[MethodName::GfdmPositive, MethodName::GfdmHybrid];
+/// Methods that a scene can name.
+const NAMED: &[MethodName] = &[
+    MethodName::GfdmClassical,
+    MethodName::GfdmConservative,
+    MethodName::GfdmPositive,
+    MethodName::GfdmHybrid,
+];
+/// All methods; the plan's choice has a support, too.
+const EVERY: &[MethodName] = &[
+    MethodName::Auto,
+    MethodName::GfdmClassical,
+    MethodName::GfdmConservative,
+    MethodName::GfdmPositive,
+    MethodName::GfdmHybrid,
+];
+
+/// Options and the methods that have them; none of the methods that are built has the last ones.
+const OPTIONS: [(&str, &[MethodName]); 9] = [
+    ("smoothing", STRONG),
+    ("log_scaling", STRONG),
+    ("correction", STRONG),
+    ("conservative_neumann", NAMED),
+    ("support", EVERY),
+    ("selection_tolerance", SELECTING),
+    ("ghosts", &[]),
+    ("kernel", &[]),
+    ("sigma", &[]),
+];
+
+pub(super) fn method(root: &Table<'_>) -> Result<MethodSpec, SceneError> {
+    let Some(value) = root.get("method") else { return Ok(MethodSpec::default()) };
+    let table = value.table()?;
+    let keys: Vec<&str> =
+        ["name", "order", "solver"].into_iter().chain(OPTIONS.map(|(key, _)| key)).collect();
+    table.allow(&keys)?;
+    let name = table.get("name").map_or(Ok(MethodName::Auto), |value| method_name(&value))?;
+    Ok(MethodSpec {
+        name,
+        order: table.get("order").map(|v| v.integer(ORDERS[0], ORDERS[1])).transpose()?.map(|v| v as usize),
+        solver: table.get("solver").map_or(Ok(SolverName::Auto), |value| solver_name(&value))?,
+        options: options(&table, name)?,
+    })
+}
+
+fn method_name(value: &Value<'_>) -> Result<MethodName, SceneError> {
+    match value.as_text() {
+        Some(name) if FUTURE_METHODS.contains(&name) => {
+            let help = format!("the methods so far are {}", METHODS.map(|(name, _)| name).join(", "));
+            Err(value.not_supported(&format!("\"{name}\""), &help))
+        }
+        _ => value.one_of(&METHODS),
+    }
+}
+
+fn solver_name(value: &Value<'_>) -> Result<SolverName, SceneError> {
+    match value.one_of(&SOLVERS)? {
+        SolverName::Multigrid => Err(value.not_supported("\"multigrid\"", "use \"auto\"")),
+        solver => Ok(solver),
+    }
+}
+
+fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, SceneError> {
+    for (key, methods) in OPTIONS {
+        if let Some(value) = table.get(key) {
+            check_owner(&value, key, methods, method)?;
+        }
+    }
+    let flag = |key: &str| table.get(key).map(|value| value.boolean()).transpose();
+    let smoothing = table.get("smoothing").map(|value| value.integer(0, MAX_SMOOTHING)).transpose()?;
+    Ok(MethodOptions {
+        smoothing: smoothing.map(|cycles| cycles as usize),
+        log_scaling: flag("log_scaling")?,
+        correction: flag("correction")?,
+        conservative_neumann: flag("conservative_neumann")?,
+        support: table.get("support").map(|value| support(&value)).transpose()?,
+        selection_tolerance: table.get("selection_tolerance").map(|value| tolerance(&value)).transpose()?,
+    })
+}
+
+/// An option belongs to certain methods and is refused by the others.
+fn check_owner(
+    value: &Value<'_>,
+    key: &str,
+    owners: &[MethodName],
+    method: MethodName,
+) -> Result<(), SceneError> {
+    if owners.contains(&method) {
+        return Ok(());
+    }
+    if owners.is_empty() {
+        return Err(value.not_supported(&format!("the method with the option `{key}`"), "remove the key"));
+    }
+    let message = format!("the method \"{method}\" has no option `{key}`");
+    let owners: Vec<String> = owners.iter().map(|owner| format!("\"{owner}\"")).collect();
+    Err(value.error(message, format!("the option belongs to name = {}", owners.join(", "))))
+}
+
+fn support(value: &Value<'_>) -> Result<f64, SceneError> {
+    match value.number()? {
+        radius if radius > 1.0 => Ok(radius),
+        radius => {
+            let help = "the radius is in units of the spacing";
+            Err(value.error(format!("expected a number above 1, found {radius}"), help))
+        }
+    }
+}
+
+fn tolerance(value: &Value<'_>) -> Result<f64, SceneError> {
+    match value.number()? {
+        tolerance if tolerance >= 0.0 => Ok(tolerance),
+        tolerance => Err(value.error(format!("expected a number not below 0, found {tolerance}"), "")),
+    }
+}
+
+impl std::fmt::Display for MethodName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(METHODS.iter().find(|(_, method)| method == self).map_or("", |(name, _)| name))
+    }
+}
+
+impl std::fmt::Display for SolverName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(SOLVERS.iter().find(|(_, solver)| solver == self).map_or("", |(name, _)| name))
+    }
+}
+
+/// From the name that a scene uses; the error says what is known.
+impl FromStr for MethodName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some((_, method)) = METHODS.iter().find(|(name, _)| *name == text) {
+            return Ok(*method);
+        }
+        let known = METHODS.map(|(name, _)| name);
+        if FUTURE_METHODS.contains(&text) {
+            return Err(format!(
+                "the method \"{text}\" is not supported yet; there are {}",
+                known.join(", ")
+            ));
+        }
+        Err(match nearest_name(text, known) {
+            Some(near) => format!("unknown method \"{text}\"; did you mean \"{near}\"?"),
+            None => format!("unknown method \"{text}\"; there are {}", known.join(", ")),
+        })
+    }
+}

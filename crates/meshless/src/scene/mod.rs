@@ -1,0 +1,109 @@
+//! The scene file: what is there, read strictly.
+//!
+//! A scene says geometry, materials, sources, boundary and interface conditions, and what to report; it never says
+//! which effects to simulate. [`Scene::parse`] turns TOML into plain data, or into a [`SceneError`] that names file,
+//! line, column and key, shows the place, and says what to do. Nothing is evaluated here beyond constant
+//! expressions: every [`ExprField`] keeps its place, so that a NaN met later can be reported with [`Place::error`].
+//!
+//! What a file can do is bounded: its length, the depth of its tables and the size of its expressions are limited,
+//! and it names no other file.
+
+mod boundaries;
+mod domain;
+mod error;
+mod expression;
+mod method;
+mod reader;
+mod regions;
+mod root;
+mod shapes;
+mod source;
+mod spec;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use error::SceneError;
+pub use expression::ExprField;
+pub use source::{MAX_FILE_BYTES, Place};
+pub use spec::{
+    BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
+    MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SolverName,
+};
+
+use source::Source;
+
+/// A scene file as data; every invariant that can be checked without evaluating a field holds.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// What it shows; the name of the file, if it does not say.
+    pub title: String,
+    /// 1, 2 or 3; the length of every vector in the scene.
+    pub dimension: usize,
+    /// The domain without its holes.
+    pub domain: DomainSpec,
+    /// How nodes are placed.
+    pub points: PointsSpec,
+    /// What is cut out of the domain; names are distinct, and none is that of another face.
+    pub holes: Vec<HoleSpec>,
+    /// Materials; a point belongs to the first region that contains it. At least one; names are distinct, and the
+    /// last region, and only it, is without geometry.
+    pub regions: Vec<RegionSpec>,
+    /// Prescribed jumps, at most one entry for each pair of regions.
+    pub interfaces: Vec<InterfaceSpec>,
+    /// Conditions, at least one; see [`BoundarySpec`] for which one holds where several match.
+    pub boundaries: Vec<BoundarySpec>,
+    /// What the scene overrides of the plan's choices.
+    pub method: MethodSpec,
+    /// Points whose values are reported, each of `dimension` coordinates.
+    pub probes: Vec<Vec<f64>>,
+    /// What to write besides the report.
+    pub output: OutputSpec,
+}
+
+impl Scene {
+    /// Reads a scene from its text; `file_name` is only what errors call it.
+    ///
+    /// # Errors
+    ///
+    /// The first thing that is wrong with the text: syntax, an unknown, missing or contradictory key, a wrong type,
+    /// a value out of its range, or an expression that does not parse.
+    pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
+        root::scene(&Arc::new(Source::new(file_name, text)))
+    }
+
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::parse`]; also where the file cannot be read, is not UTF-8, or is longer than [`MAX_FILE_BYTES`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let source = Source::read(path.as_ref())?;
+        root::scene(&Arc::new(source))
+    }
+
+    /// An error about an expression of this scene, found while evaluating it.
+    pub fn error_at(
+        &self,
+        field: &ExprField,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> SceneError {
+        field.place.error(message, help)
+    }
+
+    /// An error about the boundary conditions as a whole, such as a face that none of them covers.
+    pub fn error_at_boundaries(&self, message: impl Into<String>, help: impl Into<String>) -> SceneError {
+        let mut error = self.boundaries[0].place.error(message, help);
+        error.key = "boundaries".to_owned();
+        error
+    }
+
+    /// Names of the faces that a boundary condition can be given for, `all` excepted.
+    pub fn faces(&self) -> Vec<&str> {
+        let outer = self.domain.faces(self.dimension).iter().copied();
+        outer.chain(self.holes.iter().map(|hole| hole.name.as_str())).collect()
+    }
+}

@@ -1,0 +1,101 @@
+//! `[[regions]]` and `[[interfaces]]`.
+
+use std::collections::HashSet;
+
+use super::error::SceneError;
+use super::reader::{Table, Value};
+use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape, refuse_future_shapes};
+use super::spec::{InterfaceSpec, RegionSpec};
+
+/// Most regions of a scene; nodes carry the index of theirs in 16 bits.
+const MAX_REGIONS: usize = u16::MAX as usize;
+
+pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
+    const HELP: &str = "give at least the background: [[regions]] with `name` and `diffusivity`";
+    let value = root.get("regions").ok_or_else(|| root.missing("regions", HELP))?;
+    let tables = root.tables("regions")?;
+    if tables.is_empty() || tables.len() > MAX_REGIONS {
+        let message = format!("expected 1 to {MAX_REGIONS} regions, found {}", tables.len());
+        return Err(value.error(message, HELP));
+    }
+    let last = tables.len() - 1;
+    let mut regions = Vec::with_capacity(tables.len());
+    let mut names = HashSet::new();
+    for (index, table) in tables.into_iter().enumerate() {
+        let shape = SHAPE_KEYS.into_iter().find_map(|key| table.get(key));
+        let spec = region(&table)?;
+        check_geometry(&spec, index == last, shape)?;
+        if !names.insert(spec.name.clone()) {
+            let message = format!("there is already a region \"{}\"", spec.name);
+            return Err(table.require("name")?.error(message, "names must differ"));
+        }
+        regions.push(spec);
+    }
+    Ok(regions)
+}
+
+fn region(table: &Table<'_>) -> Result<RegionSpec, SceneError> {
+    refuse_future_shapes(table)?;
+    table.allow(&keys_with_shape(&["name", "diffusivity", "source", "exact"]))?;
+    Ok(RegionSpec {
+        name: table.require("name")?.name()?,
+        geometry: optional_shape(table)?,
+        diffusivity: table.require("diffusivity")?.expression()?.check_positive()?,
+        source: table.get("source").map(|value| value.expression()).transpose()?,
+        exact: table.get("exact").map(|value| value.expression()).transpose()?,
+        place: table.place.clone(),
+    })
+}
+
+/// The last region is the background, and only it.
+fn check_geometry(region: &RegionSpec, last: bool, shape: Option<Value<'_>>) -> Result<(), SceneError> {
+    match (&region.geometry, last) {
+        (None, false) => {
+            let message = "only the last region, the background, can be without a shape";
+            Err(region.place.error(message, "give it a shape, or move it to the end"))
+        }
+        (Some(_), true) => {
+            let place = shape.map_or_else(|| region.place.clone(), |value| value.place);
+            let message = "the last region is the background and has no shape";
+            Err(place.error(message, "remove the shape, or add a region without one at the end"))
+        }
+        _ => Ok(()),
+    }
+}
+
+pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec<InterfaceSpec>, SceneError> {
+    let mut interfaces = Vec::new();
+    let mut pairs = HashSet::new();
+    for table in root.tables("interfaces")? {
+        table.allow(&["between", "jump", "flux_jump"])?;
+        let value = table.require("between")?;
+        let between = pair(&value, regions)?;
+        if !pairs.insert([between[0].min(between[1]), between[0].max(between[1])]) {
+            return Err(value.error("there is already an entry for these two regions", "merge the entries"));
+        }
+        interfaces.push(InterfaceSpec {
+            between,
+            jump: table.get("jump").map(|value| value.expression()).transpose()?,
+            flux_jump: table.get("flux_jump").map(|value| value.expression()).transpose()?,
+            place: table.place,
+        });
+    }
+    Ok(interfaces)
+}
+
+/// Indices of two different regions.
+fn pair(value: &Value<'_>, regions: &[RegionSpec]) -> Result<[usize; 2], SceneError> {
+    let names = value.items().map_err(|_| value.expected("an array of two region names", ""))?;
+    let [first, second] = &names[..] else {
+        return Err(value.error(format!("expected 2 region names, found {}", names.len()), ""));
+    };
+    let index = |name: &Value<'_>| {
+        let known: Vec<(&str, usize)> = regions.iter().map(|r| r.name.as_str()).zip(0..).collect();
+        name.one_of(&known)
+    };
+    let between = [index(first)?, index(second)?];
+    if between[0] == between[1] {
+        return Err(second.error("an interface is between two different regions", ""));
+    }
+    Ok(between)
+}

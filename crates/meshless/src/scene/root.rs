@@ -1,0 +1,93 @@
+//! The file as a whole, and its short sections.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use toml::de::DeTable;
+
+use super::error::SceneError;
+use super::reader::Table;
+use super::source::{MAX_FILE_BYTES, Place, Source};
+use super::spec::OutputSpec;
+use super::{Scene, boundaries, domain, method, regions};
+
+const KEYS: [&str; 13] = [
+    "title",
+    "dimension",
+    "domain",
+    "points",
+    "holes",
+    "regions",
+    "interfaces",
+    "boundaries",
+    "accuracy",
+    "method",
+    "time",
+    "probes",
+    "output",
+];
+
+/// Sections that are recognised and not built.
+const FUTURE_SECTIONS: [(&str, &str); 2] = [
+    ("accuracy", "remove the section, and choose `spacing` by the reported estimate"),
+    ("time", "remove the section: scenes are steady so far"),
+];
+
+pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
+    if source.text.len() > MAX_FILE_BYTES {
+        return Err(source.too_long(source.text.len() as u64));
+    }
+    let parsed = DeTable::parse(&source.text).map_err(|error| {
+        Place::new(source, "", error.span().unwrap_or(0..0)).error(error.message().replace('\n', ", "), "")
+    })?;
+    let root = Table::root(source, parsed.get_ref());
+    root.allow(&KEYS)?;
+    for (key, help) in FUTURE_SECTIONS {
+        if let Some(value) = root.get(key) {
+            return Err(value.not_supported(&format!("[{key}]"), help));
+        }
+    }
+    let dimension = root.require("dimension")?.integer(1, 3)? as usize;
+    let root = root.with_dimension(dimension);
+    let domain = domain::domain(&root)?;
+    let points = domain::points(&root)?;
+    let holes = domain::holes(&root)?;
+    let regions = regions::regions(&root)?;
+    Ok(Scene {
+        title: title(&root, &source.file)?,
+        dimension,
+        interfaces: regions::interfaces(&root, &regions)?,
+        boundaries: boundaries::boundaries(&root, &domain, &holes)?,
+        method: method::method(&root)?,
+        probes: probes(&root)?,
+        output: output(&root)?,
+        domain,
+        points,
+        holes,
+        regions,
+    })
+}
+
+fn title(root: &Table<'_>, file: &str) -> Result<String, SceneError> {
+    match root.get("title") {
+        Some(value) => value.text().map(str::to_owned),
+        None => Ok(Path::new(file)
+            .file_stem()
+            .map_or(file.to_owned(), |stem| stem.to_string_lossy().into_owned())),
+    }
+}
+
+fn probes(root: &Table<'_>) -> Result<Vec<Vec<f64>>, SceneError> {
+    let probe = |table: Table<'_>| {
+        table.allow(&["at"])?;
+        table.require("at")?.vector()
+    };
+    root.tables("probes")?.into_iter().map(probe).collect()
+}
+
+fn output(root: &Table<'_>) -> Result<OutputSpec, SceneError> {
+    let Some(value) = root.get("output") else { return Ok(OutputSpec::default()) };
+    let table = value.subtable(&["vtu", "plot"])?;
+    let flag = |key: &str| table.get(key).map_or(Ok(false), |value| value.boolean());
+    Ok(OutputSpec { vtu: flag("vtu")?, plot: flag("plot")? })
+}

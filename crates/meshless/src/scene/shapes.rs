@@ -1,0 +1,162 @@
+//! Shapes of domains, holes and regions.
+
+use super::error::SceneError;
+use super::reader::{Table, Value};
+use super::spec::{BoundsSpec, ShapeSpec};
+
+/// Keys that say a shape; a table has at most one of them.
+pub(super) const SHAPE_KEYS: [&str; 9] = [
+    "box",
+    "sphere",
+    "cylinder",
+    "polygon",
+    "half_space",
+    "level_set",
+    "union",
+    "intersection",
+    "difference",
+];
+
+/// Shapes that are recognised and not built.
+const FUTURE_SHAPES: [(&str, &str); 2] = [
+    ("stl", "describe the part by shapes or a level set"),
+    ("free_space", "give a domain that ends, such as `box`"),
+];
+
+/// The keys of a table that has a shape: its own and those of shapes.
+pub(super) fn keys_with_shape(own: &[&'static str]) -> Vec<&'static str> {
+    own.iter().copied().chain(SHAPE_KEYS).collect()
+}
+
+/// Refuses the shapes that are recognised and not built.
+pub(super) fn refuse_future_shapes(table: &Table<'_>) -> Result<(), SceneError> {
+    for (key, help) in FUTURE_SHAPES {
+        if let Some(value) = table.get(key) {
+            return Err(value.not_supported(&format!("`{key}`"), help));
+        }
+    }
+    Ok(())
+}
+
+/// The one shape of a table; `None`, if it has none.
+pub(super) fn optional_shape(table: &Table<'_>) -> Result<Option<ShapeSpec>, SceneError> {
+    let given: Vec<&str> = SHAPE_KEYS.into_iter().filter(|key| table.has(key)).collect();
+    match given[..] {
+        [] => Ok(None),
+        [key] => shape(key, &table.require(key)?).map(Some),
+        [first, second, ..] => {
+            let message = format!("there is already the shape `{first}`");
+            Err(table
+                .require(second)?
+                .error(message, "combine shapes with `union`, `intersection` or `difference`"))
+        }
+    }
+}
+
+/// The one shape of a table that must have one.
+pub(super) fn required_shape(table: &Table<'_>) -> Result<ShapeSpec, SceneError> {
+    optional_shape(table)?.ok_or_else(|| {
+        table.place.error("the shape is missing", format!("give one of {}", SHAPE_KEYS.join(", ")))
+    })
+}
+
+fn shape(key: &str, value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
+    match key {
+        "box" => bounds(value).map(ShapeSpec::Box),
+        "sphere" => sphere(&value.subtable(&["center", "radius"])?),
+        "cylinder" => cylinder(&value.subtable(&["point", "axis", "radius", "length"])?),
+        "polygon" => polygon(value),
+        "half_space" => half_space(&value.subtable(&["point", "normal"])?),
+        "level_set" => value.expression().map(ShapeSpec::LevelSet),
+        "union" => parts(value).map(ShapeSpec::Union),
+        "intersection" => parts(value).map(ShapeSpec::Intersection),
+        _ => parts(value).map(ShapeSpec::Difference),
+    }
+}
+
+/// A table of `min` and `max` with `min < max` along every axis.
+pub(super) fn bounds(value: &Value<'_>) -> Result<BoundsSpec, SceneError> {
+    let table = value.subtable(&["min", "max"])?;
+    let (min, max) = (table.require("min")?.vector()?, table.require("max")?);
+    let place = &max.place;
+    let max = max.vector()?;
+    if let Some(axis) = (0..min.len()).find(|&axis| min[axis] >= max[axis]) {
+        let message =
+            format!("`max` ({}) is not above `min` ({}) along axis {}", max[axis], min[axis], axis + 1);
+        return Err(place.error(message, ""));
+    }
+    Ok(BoundsSpec { min, max })
+}
+
+fn sphere(table: &Table<'_>) -> Result<ShapeSpec, SceneError> {
+    let center = table.require("center")?.vector()?;
+    Ok(ShapeSpec::Sphere { center, radius: table.require("radius")?.positive()? })
+}
+
+fn cylinder(table: &Table<'_>) -> Result<ShapeSpec, SceneError> {
+    needs_dimension(table.dimension, 3, "cylinder", |message, help| table.place.error(message, help))?;
+    Ok(ShapeSpec::Cylinder {
+        point: table.require("point")?.vector()?,
+        axis: table.require("axis")?.direction()?,
+        radius: table.require("radius")?.positive()?,
+        length: table.get("length").map(|length| length.positive()).transpose()?,
+    })
+}
+
+fn half_space(table: &Table<'_>) -> Result<ShapeSpec, SceneError> {
+    let point = table.require("point")?.vector()?;
+    Ok(ShapeSpec::HalfSpace { point, normal: table.require("normal")?.direction()? })
+}
+
+fn polygon(value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
+    needs_dimension(value.dimension, 2, "polygon", |message, help| value.error(message, help))?;
+    let items = value.items()?;
+    if items.len() < 3 {
+        return Err(value.error(format!("a polygon has at least 3 vertices, not {}", items.len()), ""));
+    }
+    let mut vertices: Vec<[f64; 2]> = Vec::with_capacity(items.len());
+    for item in &items {
+        let vertex = item.vector()?;
+        let vertex = [vertex[0], vertex[1]];
+        if vertices.last() == Some(&vertex) {
+            return Err(item.error("the vertex repeats the one before it", ""));
+        }
+        vertices.push(vertex);
+    }
+    if vertices.first() == vertices.last() {
+        let help = "a polygon closes by itself";
+        return Err(items[items.len() - 1].error("the last vertex repeats the first one", help));
+    }
+    Ok(ShapeSpec::Polygon(vertices))
+}
+
+fn needs_dimension(
+    dimension: usize,
+    needed: usize,
+    shape: &str,
+    error: impl FnOnce(String, &'static str) -> SceneError,
+) -> Result<(), SceneError> {
+    if dimension == needed {
+        return Ok(());
+    }
+    let message = format!("a {shape} needs dimension = {needed}, the scene has {dimension}");
+    Err(error(message, "use `sphere`, `box` or `level_set`"))
+}
+
+/// At least two shapes, each a table of its own.
+fn parts(value: &Value<'_>) -> Result<Vec<ShapeSpec>, SceneError> {
+    let items = value.items()?;
+    if items.len() < 2 {
+        let message = format!("expected at least 2 shapes, found {}", items.len());
+        return Err(
+            value.error(message, "write an array of tables such as [{ sphere = { … } }, { box = { … } }]")
+        );
+    }
+    let part = |item: Value<'_>| {
+        let table = item.table()?;
+        refuse_future_shapes(&table)?;
+        table.allow(&SHAPE_KEYS)?;
+        required_shape(&table)
+    };
+    items.into_iter().map(part).collect()
+}

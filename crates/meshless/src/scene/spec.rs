@@ -1,0 +1,271 @@
+//! The parts of a scene.
+
+use super::expression::ExprField;
+use super::source::Place;
+
+/// Faces of a box, two an axis.
+pub(super) const BOX_FACES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
+/// The one face of any other domain.
+pub(super) const OUTER_FACE: &str = "outer";
+/// What stands for every face in a boundary condition.
+pub(super) const ALL_FACES: &str = "all";
+
+/// The domain, before holes are cut out of it.
+#[derive(Debug, Clone)]
+pub struct DomainSpec {
+    /// Its shape. A box has the faces `left right bottom top back front`, anything else has `outer`.
+    pub shape: ShapeSpec,
+    /// A box that holds the shape; given for shapes that do not end by themselves.
+    pub bounds: Option<BoundsSpec>,
+    /// The table in the file.
+    pub place: Place,
+}
+
+impl DomainSpec {
+    /// Names of the outer faces.
+    pub fn faces(&self, dimension: usize) -> &'static [&'static str] {
+        match self.shape {
+            ShapeSpec::Box(_) => &BOX_FACES[..2 * dimension],
+            _ => &[OUTER_FACE],
+        }
+    }
+}
+
+/// Opposite corners of an axis-aligned box; `min < max` along every axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoundsSpec {
+    /// Lower corner.
+    pub min: Vec<f64>,
+    /// Upper corner.
+    pub max: Vec<f64>,
+}
+
+/// A shape; every vector has as many finite components as the scene has dimensions.
+#[derive(Debug, Clone)]
+pub enum ShapeSpec {
+    /// An axis-aligned box.
+    Box(BoundsSpec),
+    /// An interval, a disc or a ball.
+    Sphere {
+        /// Centre.
+        center: Vec<f64>,
+        /// Radius, positive.
+        radius: f64,
+    },
+    /// A circular cylinder; 3-D only.
+    Cylinder {
+        /// A point on the axis; the middle, if the cylinder has a length.
+        point: Vec<f64>,
+        /// Direction of the axis, of any length but zero.
+        axis: Vec<f64>,
+        /// Radius, positive.
+        radius: f64,
+        /// Length, positive; infinite if absent.
+        length: Option<f64>,
+    },
+    /// A closed polygon of at least three vertices; 2-D only.
+    Polygon(Vec<[f64; 2]>),
+    /// Everything behind a plane.
+    HalfSpace {
+        /// A point of the plane.
+        point: Vec<f64>,
+        /// Its outward normal, of any length but zero.
+        normal: Vec<f64>,
+    },
+    /// Where an expression is negative.
+    LevelSet(ExprField),
+    /// Points of any of the shapes, of which there are at least two.
+    Union(Vec<ShapeSpec>),
+    /// Points of all of the shapes, of which there are at least two.
+    Intersection(Vec<ShapeSpec>),
+    /// Points of the first shape that are in none of the others, of which there is at least one.
+    Difference(Vec<ShapeSpec>),
+}
+
+impl ShapeSpec {
+    /// Whether the shape is known to end by itself; of a level set, nothing is known.
+    pub fn is_bounded(&self) -> bool {
+        match self {
+            Self::Box(_) | Self::Sphere { .. } | Self::Polygon(_) => true,
+            Self::Cylinder { length, .. } => length.is_some(),
+            Self::HalfSpace { .. } | Self::LevelSet(_) => false,
+            Self::Union(parts) => parts.iter().all(Self::is_bounded),
+            Self::Intersection(parts) => parts.iter().any(Self::is_bounded),
+            Self::Difference(parts) => parts.first().is_some_and(Self::is_bounded),
+        }
+    }
+}
+
+/// How nodes are placed.
+#[derive(Debug, Clone)]
+pub struct PointsSpec {
+    /// Distance of neighbouring nodes; positive where it is constant.
+    pub spacing: ExprField,
+    /// How regular the cloud is; irregular, if the scene does not say.
+    pub layout: LayoutName,
+    /// Seed of the random numbers; 1, if the scene does not say.
+    pub seed: u64,
+    /// The table in the file.
+    pub place: Place,
+}
+
+/// How regular a cloud is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LayoutName {
+    /// `grid`
+    Grid,
+    /// `jittered`
+    Jittered,
+    /// `irregular`
+    Irregular,
+}
+
+/// A hole: its surface is a face of the domain with the hole's name.
+#[derive(Debug, Clone)]
+pub struct HoleSpec {
+    /// Name of the hole and of its face.
+    pub name: String,
+    /// What is cut out.
+    pub shape: ShapeSpec,
+    /// The table in the file.
+    pub place: Place,
+}
+
+/// A material and where it is.
+#[derive(Debug, Clone)]
+pub struct RegionSpec {
+    /// Name, used in the report.
+    pub name: String,
+    /// Where it is; `None` for the background.
+    pub geometry: Option<ShapeSpec>,
+    /// The coefficient eta; positive where it is constant.
+    pub diffusivity: ExprField,
+    /// The source f; none is zero.
+    pub source: Option<ExprField>,
+    /// The exact solution, where it is known.
+    pub exact: Option<ExprField>,
+    /// The table in the file.
+    pub place: Place,
+}
+
+/// What jumps at the interface of two regions besides eta.
+#[derive(Debug, Clone)]
+pub struct InterfaceSpec {
+    /// Indices of two different regions A and B, as the scene names them; the normal points from A to B.
+    pub between: [usize; 2],
+    /// `u_B - u_A`; none is zero.
+    pub jump: Option<ExprField>,
+    /// `(eta du/dn)_B - (eta du/dn)_A`; none is zero.
+    pub flux_jump: Option<ExprField>,
+    /// The table in the file.
+    pub place: Place,
+}
+
+/// A boundary condition for a part of the boundary.
+///
+/// Entries are tried in the order of the file, and the first one whose face and `where` match a boundary point is
+/// its condition; `face = "all"` at the end catches the rest. A point that no entry matches is an error.
+#[derive(Debug, Clone)]
+pub struct BoundarySpec {
+    /// A face of the domain, the name of a hole, or `all`.
+    pub face: String,
+    /// The entry matches where this is not zero; everywhere on the face, if absent.
+    pub where_: Option<ExprField>,
+    /// The condition.
+    pub condition: ConditionSpec,
+    /// The table in the file.
+    pub place: Place,
+}
+
+/// A boundary condition; n is the outward normal.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "a scene has a handful of conditions")]
+pub enum ConditionSpec {
+    /// u is given.
+    Dirichlet(ExprField),
+    /// du/dn is given.
+    Neumann(ExprField),
+    /// eta du/dn is given.
+    Flux(ExprField),
+    /// `a u + b eta du/dn = g`
+    Robin {
+        /// Coefficient of u.
+        a: ExprField,
+        /// Coefficient of the flux; not the constant 0.
+        b: ExprField,
+        /// Right-hand side.
+        g: ExprField,
+    },
+}
+
+/// What the scene overrides of the plan's choices.
+#[derive(Debug, Clone, Default)]
+pub struct MethodSpec {
+    /// The method; `auto` leaves it to the plan.
+    pub name: MethodName,
+    /// Order of the stencils.
+    pub order: Option<usize>,
+    /// The linear solver; `auto` leaves it to the plan.
+    pub solver: SolverName,
+    /// Further options, each `None` unless the method has it and the scene gives it.
+    pub options: MethodOptions,
+}
+
+/// Discretisations that are built. More names are recognised by the reader, which answers that they are not yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum MethodName {
+    /// `auto`
+    #[default]
+    Auto,
+    /// `gfdm-classical`
+    GfdmClassical,
+    /// `gfdm-conservative`
+    GfdmConservative,
+    /// `gfdm-positive`
+    GfdmPositive,
+    /// `gfdm-hybrid`
+    GfdmHybrid,
+}
+
+/// Linear solvers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum SolverName {
+    /// `auto`
+    #[default]
+    Auto,
+    /// `direct`
+    Direct,
+    /// `bicgstab`
+    BiCgStab,
+    /// `gmres`
+    Gmres,
+    /// `multigrid`; recognised, and refused by the reader until it is built.
+    Multigrid,
+}
+
+/// Options of single methods (Kraus et al. 2022, "A meshfree point collocation method for elliptic interface
+/// problems").
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MethodOptions {
+    /// Smoothing cycles of the diffusivity.
+    pub smoothing: Option<usize>,
+    /// Work with log eta.
+    pub log_scaling: Option<bool>,
+    /// Correct stencils towards diagonal dominance.
+    pub correction: Option<bool>,
+    /// Boundary conditions on the flux by cell balances.
+    pub conservative_neumann: Option<bool>,
+    /// Support radius in units of the spacing, above 1.
+    pub support: Option<f64>,
+    /// Diagonal-dominance error above which a node gets a conservative row, not negative.
+    pub selection_tolerance: Option<f64>,
+}
+
+/// What to write besides the report; nothing, if the scene does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OutputSpec {
+    /// Fields for ParaView.
+    pub vtu: bool,
+    /// A picture of the solution.
+    pub plot: bool,
+}
