@@ -1,4 +1,31 @@
-//! Shapes, domains, regions and point clouds in one, two and three dimensions.
+//! Shapes, domains with named faces and holes, regions, and point clouds in one, two and three dimensions.
+//!
+//! A [`Shape`] is a primitive, a [`LevelSet`] or made of other shapes; it can tell the level of a point (negative
+//! inside), its gradient, and the nearest point of its surface. A [`Domain`] is a shape less some holes, with a name
+//! for every face. [`generate`] fills a domain with nodes, evenly or graded; those on the boundary know which faces
+//! they touch and the outward normals there. A [`RegionMap`] labels the nodes by shapes, and a [`RegionGraph`] tells
+//! which connected parts there are and which of them meet.
+//!
+//! Not here: neighbour lists, cells and meshes. Nothing in this crate knows an equation.
+//!
+//! ```
+//! use meshless_geometry::{CloudParams, Domain, Layout, Shape, Spacing, generate, quality};
+//!
+//! let domain = Domain::boxed([0.0, 0.0], [2.0, 1.0])?.with_hole("rod", Shape::ball([0.5, 0.5], 0.2)?)?;
+//! let params = CloudParams {
+//!     spacing: Spacing::Uniform(0.05),
+//!     layout: Layout::Irregular,
+//!     seed: 1,
+//!     max_nodes: 10_000,
+//! };
+//! let cloud = generate(&domain, &params)?;
+//! assert!(quality(&cloud, &domain).relative_separation > 0.75);
+//!
+//! let rod = domain.face("rod").expect("named above");
+//! let on_rod = cloud.boundary().iter().filter(|b| b.touches[0].face == rod).count();
+//! assert_eq!(on_rod, 25); // circumference over spacing
+//! # Ok::<(), meshless_geometry::GeometryError>(())
+//! ```
 
 mod aabb;
 mod boundary;

@@ -14,9 +14,11 @@ const ANGLE_TOLERANCE: f64 = 1e-10;
 /// curvature; steep functions (exponentials) need more.
 const NEWTON_STEPS: usize = 60;
 
-/// Steps that slide a point of the surface towards the nearest one; each gains a factor of distance over radius of
-/// curvature.
-const SLIDE_STEPS: usize = 100;
+/// Steps that slide a point of the surface towards the nearest one.
+const SLIDE_STEPS: usize = 60;
+
+/// A step of sliding, relative to the tangential offset, below which no nearer point is expected.
+const SHORTEST_SLIDE: f64 = 1e-4;
 
 /// Intervals of the search for a change of sign along a line.
 const SEARCH_INTERVALS: usize = 32;
@@ -92,7 +94,8 @@ pub(crate) fn onto_surface<const D: usize>(
     None
 }
 
-/// Moves `p` along the surface until `x - p` is normal to it, as long as that brings it nearer to `x`.
+/// Moves `p` along the surface until `x - p` is normal to it, never away from `x`. The length of each step comes from
+/// the change that the last one made (Barzilai and Borwein 1988), which makes up for the curvature of the surface.
 fn slide<const D: usize>(
     level: Level<'_, D>,
     gradient: Gradient<'_, D>,
@@ -100,24 +103,32 @@ fn slide<const D: usize>(
     p: &[f64; D],
     tolerance: f64,
 ) -> [f64; D] {
-    let mut p = *p;
-    let mut best = distance(x, &p);
-    let mut damping = 1.0;
+    let tangential = |p: &[f64; D]| {
+        let n = normalized(&gradient(p))?;
+        let away = sub(x, p);
+        Some(axpy(&away, -dot(&away, &n), &n))
+    };
+    let (mut p, mut best) = (*p, distance(x, p));
+    let Some(mut t) = tangential(&p) else { return p };
+    let mut length = 1.0;
     for _ in 0..SLIDE_STEPS {
-        let Some(n) = normalized(&gradient(&p)) else { return p };
-        let away = sub(x, &p);
-        let tangential = axpy(&away, -dot(&away, &n), &n);
-        if norm(&tangential) <= (ANGLE_TOLERANCE * best).max(tolerance) || damping < 1e-3 {
-            return p;
+        if norm(&t) <= (ANGLE_TOLERANCE * best).max(tolerance) || length < SHORTEST_SLIDE {
+            break;
         }
-        let trial = axpy(&p, damping, &tangential);
-        match onto_surface(level, gradient, &trial, best.max(tolerance), tolerance) {
-            Some(q) if distance(x, &q) < best => {
-                best = distance(x, &q);
-                p = q;
-                damping = (1.5 * damping).min(1.0);
+        let trial = onto_surface(level, gradient, &axpy(&p, length, &t), best.max(tolerance), tolerance);
+        let next = trial.and_then(|q| tangential(&q).map(|tq| (q, tq, distance(x, &q))));
+        match next {
+            // Near the foot distances agree to rounding; there the tangential part tells which point is better.
+            Some((q, tq, d))
+                if d <= best * (1.0 + 4.0 * f64::EPSILON) && (d < best || norm(&tq) < norm(&t)) =>
+            {
+                let (moved, change) = (sub(&q, &p), sub(&t, &tq));
+                let curvature = dot(&moved, &change);
+                length =
+                    if curvature > 0.0 { (dot(&moved, &moved) / curvature).clamp(0.1, 10.0) } else { 1.0 };
+                (p, t, best) = (q, tq, d);
             }
-            _ => damping *= 0.5,
+            _ => length *= 0.5,
         }
     }
     p

@@ -52,6 +52,16 @@ impl<const D: usize> Patch<'_, D> {
             && self.parents.iter().all(|parent| shape_distance(parent, x) <= tolerance)
     }
 
+    /// Outward unit normal; between the two at the corner of a polygon.
+    pub(crate) fn mean_normal(&self, x: &[f64; D], tolerance: f64) -> Option<[f64; D]> {
+        if self.polygon().is_none() {
+            return normalized(&self.gradient(x)).map(|n| scale(self.sign, &n));
+        }
+        let mut found = Vec::new();
+        self.normals(x, tolerance, &mut found);
+        normalized(&found.iter().fold([0.0; D], |sum, n| crate::vector::axpy(&sum, 1.0, n)))
+    }
+
     /// Adds the outward normals of the patch at one of its points: two at the corner of a polygon.
     pub(crate) fn normals(&self, x: &[f64; D], tolerance: f64, found: &mut Vec<[f64; D]>) {
         let mut add = |n: [f64; D]| {

@@ -1,12 +1,20 @@
+use super::manifold::onto;
 use super::patch::{Patch, independent};
 use crate::cells::{Cell, for_each_cell};
 use crate::cloud::{Spacing, Touch, too_many};
 use crate::domain::Domain;
 use crate::error::GeometryError;
 use crate::spatial_hash::SpatialHash;
+use crate::vector::{axpy, scale};
 
 /// How far from a surface a point still lies on it: a length relative to the domain's diameter.
 const ON_PATCH: f64 = 1e-9;
+
+/// How far behind a patch the domain is looked for, relative to the spacing.
+const PROBE_DEPTH: f64 = 1e-4;
+
+/// How far beside an edge the two patches that meet in it are looked at, relative to the spacing.
+const PROBE_ASIDE: f64 = 1e-2;
 
 /// Nodes while they are being placed. Those on the boundary come first.
 pub(crate) struct Sampler<'a, const D: usize> {
@@ -49,24 +57,28 @@ impl<'a, const D: usize> Sampler<'a, D> {
         Ok(self.nodes.insert(x, spacing))
     }
 
-    /// Adds a boundary node, with a touch of every patch that holds it.
-    pub(crate) fn push_boundary(&mut self, x: [f64; D], spacing: f64) -> Result<u32, GeometryError> {
+    /// Adds a boundary node, with a touch of every patch that bounds the domain there. Points where none does (the
+    /// bottom of a notch that is flush with a face) are passed over: `false`.
+    pub(crate) fn push_boundary(&mut self, x: [f64; D], spacing: f64) -> Result<bool, GeometryError> {
         let touches = self.touches_at(&x);
         if touches.is_empty() {
-            return Err(GeometryError::domain(format!("the boundary has no normal at {x:?}")));
+            return Ok(false);
         }
-        let id = self.push(x, spacing)?;
+        self.push(x, spacing)?;
         self.touches.push(touches);
-        Ok(id)
+        Ok(true)
     }
 
     pub(crate) fn touches_at(&self, x: &[f64; D]) -> Vec<Touch<D>> {
         let mut found: Vec<Touch<D>> = Vec::new();
         let mut normals = Vec::new();
-        for patch in &self.patches {
-            if !patch.holds(x, self.tolerance) {
+        let holding: Vec<usize> =
+            (0..self.patches.len()).filter(|&k| self.patches[k].holds(x, self.tolerance)).collect();
+        for &k in &holding {
+            if !self.bounds_domain(k, &holding, x) {
                 continue;
             }
+            let patch = &self.patches[k];
             normals.clear();
             patch.normals(x, self.tolerance, &mut normals);
             for &normal in &normals {
@@ -89,7 +101,35 @@ impl<'a, const D: usize> Sampler<'a, D> {
         if subset.is_empty() {
             return self.domain.contains(x, self.tolerance);
         }
-        subset.iter().all(|&k| self.patches[k].holds(x, self.tolerance)) && self.on_boundary(x)
+        subset.iter().all(|&k| self.patches[k].holds(x, self.tolerance))
+            && self.on_boundary(x)
+            && subset.iter().all(|&k| self.bounds_domain(k, subset, x))
+    }
+
+    /// Whether the domain lies on the inner side of patch `k` at `x` or, where other patches `meeting` it there may
+    /// hide that, right beside it. Patches of two shapes that are flush have nothing between them and bound nothing.
+    fn bounds_domain(&self, k: usize, meeting: &[usize], x: &[f64; D]) -> bool {
+        let Ok(h) = self.spacing.at(x) else { return false };
+        let patch = &self.patches[k];
+        let inside = |p: &[f64; D]| {
+            patch
+                .mean_normal(p, self.tolerance)
+                .is_none_or(|n| self.domain.level(&axpy(p, -PROBE_DEPTH * h, &n)) < 0.0)
+        };
+        if meeting.len() <= 1 || patch.polygon().is_some() {
+            return inside(x);
+        }
+        let others: Vec<[f64; D]> = meeting
+            .iter()
+            .filter(|&&j| j != k)
+            .filter_map(|&j| self.patches[j].mean_normal(x, self.tolerance))
+            .collect();
+        let all = others.iter().fold([0.0; D], |sum, n| axpy(&sum, -1.0, n));
+        let beside = others.iter().flat_map(|n| [scale(-1.0, n), *n]);
+        [[0.0; D], all].into_iter().chain(beside).any(|direction| {
+            onto(&[patch], &axpy(x, PROBE_ASIDE * h, &direction), h)
+                .is_some_and(|p| patch.holds(&p, self.tolerance) && inside(&p))
+        })
     }
 
     pub(crate) fn pick(&self, subset: &[usize]) -> Vec<&Patch<'a, D>> {

@@ -92,6 +92,5 @@ fn accept<const D: usize>(
     if sampler.nodes.conflicts(&x, h, RADIUS) {
         return Ok(false);
     }
-    sampler.push_boundary(x, h)?;
-    Ok(true)
+    sampler.push_boundary(x, h)
 }

@@ -6,6 +6,9 @@ use crate::quasi_random::Kronecker;
 /// Sample points of the spacing for graded clouds.
 const SPACING_SAMPLES: usize = 1 << 14;
 
+/// Sample points of the spacing on every face of a box.
+const FACE_SAMPLES: usize = 1 << 10;
+
 /// About how many nodes a cloud has, without generating it: the measure over the volume of a node, plus half a layer
 /// on the boundary of a box. Costs at most 65536 evaluations of the level.
 ///
@@ -29,9 +32,27 @@ pub fn estimate_nodes<const D: usize>(
                     density += spacing.at(&x)?.powi(-(D as i32));
                 }
             }
-            Ok(bounds.measure() * density / SPACING_SAMPLES as f64)
+            Ok(bounds.measure() * density / SPACING_SAMPLES as f64 + half_layer(domain, spacing)?)
         }
     }
+}
+
+/// Half a node for every node on the planes of an outer box.
+fn half_layer<const D: usize>(domain: &Domain<D>, spacing: &Spacing<D>) -> Result<f64, GeometryError> {
+    let Some(bounds) = domain.outer_box() else { return Ok(0.0) };
+    let mut nodes = 0.0;
+    for axis in 0..D {
+        let area = bounds.measure() / bounds.lengths()[axis];
+        for end in [bounds.min[axis], bounds.max[axis]] {
+            for mut x in Kronecker::new(&bounds).take(FACE_SAMPLES) {
+                x[axis] = end;
+                if domain.level(&x) <= 0.0 {
+                    nodes += 0.5 * area / FACE_SAMPLES as f64 * spacing.at(&x)?.powi(1 - D as i32);
+                }
+            }
+        }
+    }
+    Ok(nodes)
 }
 
 /// Refuses clouds that would be far too large before any node exists.

@@ -9,7 +9,7 @@ use crate::vector::{axpy, norm};
 
 /// Smallest distance of nodes over the spacing, for 2-D and 3-D. Measured such that there are `1 / s^D` nodes a unit
 /// of volume.
-const RADIUS: [f64; 2] = [0.9, 0.9];
+const RADIUS: [f64; 2] = [0.895, 0.9];
 
 /// Candidates around every node, for 2-D and 3-D.
 const CANDIDATES: [usize; 2] = [12, 24];
