@@ -24,14 +24,10 @@ pub struct ExprField {
 }
 
 impl ExprField {
-    /// An expression from outside of the file, such as a command-line option, which errors then name.
-    ///
-    /// # Errors
-    ///
-    /// If the text does not parse or is a constant that is not finite.
-    pub fn from_option(option: &str, text: &str, dimension: usize) -> Result<Self, SceneError> {
-        let place = Place::new(&Arc::new(Source::new("command line", text)), option, 0..text.len());
-        parse(text, place, dimension, Some(0))
+    /// An expression that the command line gave in place of the scene's; errors about it show the option's text.
+    pub fn from_command_line(text: &str, expr: Expr) -> Self {
+        let place = Place::new(&Arc::new(Source::new("command line", text)), "", 0..text.len());
+        Self { text: text.to_owned(), expr, place }
     }
 
     /// The value, if the expression is constant and therefore finite.
@@ -61,7 +57,7 @@ impl Value<'_> {
             let help = "write a number, or an expression in quotes";
             return Err(self.expected("a number or an expression", help));
         };
-        parse(text, self.place.clone(), self.dimension, content_offset(self.place.text(), text))
+        parse(text, &self.place, self.dimension)
     }
 }
 
@@ -69,7 +65,7 @@ impl Value<'_> {
 fn parse(text: &str, place: Place, dimension: usize, offset: Option<usize>) -> Result<ExprField, SceneError> {
     let expr = Expr::parse(text, &VARIABLES[..dimension]).map_err(|error| {
         let ParseError { span, message, help } = error;
-        let place = match offset {
+        let place = match content_offset(place.text(), text) {
             Some(offset) => place.at(shift(&span, place.span.start + offset)),
             None => place.clone(),
         };
@@ -78,7 +74,7 @@ fn parse(text: &str, place: Place, dimension: usize, offset: Option<usize>) -> R
     if let Some(value) = expr.as_constant().filter(|value| !value.is_finite()) {
         return Err(place.error(format!("expected a finite value, found {value}"), ""));
     }
-    Ok(ExprField { text: text.to_owned(), expr, place })
+    Ok(ExprField { text: text.to_owned(), expr, place: place.clone() })
 }
 
 fn shift(span: &Range<usize>, by: usize) -> Range<usize> {
@@ -114,11 +110,9 @@ mod tests {
     }
 
     #[test]
-    fn options_of_the_command_line_are_named_in_errors() {
-        let error = ExprField::from_option("--spacing", "0.1*z", 2).expect_err("z in 2-D");
-        assert_eq!((error.file.as_str(), error.line, error.column), ("command line", 1, 5));
-        assert_eq!(error.key, "--spacing");
-        let field = ExprField::from_option("--spacing", "0.1", 2).expect("valid");
-        assert_eq!(field.as_constant(), Some(0.1));
+    fn errors_about_the_command_line_show_its_text() {
+        let expr = Expr::parse("0.1*x", &["x"]).expect("valid");
+        let error = ExprField::from_command_line("0.1*x", expr).place.error("not positive", "");
+        assert_eq!(error.to_string(), "command line:1:1: not positive\n    1 | 0.1*x\n      | ^^^^^");
     }
 }

@@ -1,7 +1,5 @@
 //! `[method]`: names, and which options belong to which method.
 
-use std::str::FromStr;
-
 use meshless_expr::nearest_name;
 
 use super::error::SceneError;
@@ -91,13 +89,10 @@ pub(super) fn method(root: &Table<'_>) -> Result<MethodSpec, SceneError> {
 }
 
 fn method_name(value: &Value<'_>) -> Result<MethodName, SceneError> {
-    match value.as_text() {
-        Some(name) if FUTURE_METHODS.contains(&name) => {
-            let help = format!("the methods so far are {}", METHODS.map(|(name, _)| name).join(", "));
-            Err(value.not_supported(&format!("\"{name}\""), &help))
-        }
-        _ => value.one_of(&METHODS),
-    }
+    MethodName::parse(value.text()?).map_err(|error| {
+        let help = error.help();
+        value.error(error.to_string(), help)
+    })
 }
 
 fn solver_name(value: &Value<'_>) -> Result<SolverName, SceneError> {
@@ -138,8 +133,8 @@ fn check_owner(
     if owners.is_empty() {
         return Err(value.not_supported(&format!("the method with the option `{key}`"), "remove the key"));
     }
-    let message = format!("the method \"{method}\" has no option `{key}`");
-    let owners: Vec<String> = owners.iter().map(|owner| format!("\"{owner}\"")).collect();
+    let message = format!("the method \"{}\" has no option `{key}`", method.as_str());
+    let owners: Vec<String> = owners.iter().map(|owner| format!("\"{}\"", owner.as_str())).collect();
     Err(value.error(message, format!("the option belongs to name = {}", owners.join(", "))))
 }
 
@@ -160,36 +155,55 @@ fn tolerance(value: &Value<'_>) -> Result<f64, SceneError> {
     }
 }
 
-impl std::fmt::Display for MethodName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(METHODS.iter().find(|(_, method)| method == self).map_or("", |(name, _)| name))
-    }
+/// Why a text is not the name of a method.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MethodNameError {
+    /// There is no such method.
+    #[error("unknown method \"{}\"", .0.escape_debug())]
+    Unknown(String),
+    /// The method is known and not built.
+    #[error("the method \"{0}\" is not supported yet")]
+    NotSupported(String),
 }
 
-impl std::fmt::Display for SolverName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(SOLVERS.iter().find(|(_, solver)| solver == self).map_or("", |(name, _)| name))
-    }
-}
-
-/// From the name that a scene uses; the error says what is known.
-impl FromStr for MethodName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if let Some((_, method)) = METHODS.iter().find(|(name, _)| *name == text) {
-            return Ok(*method);
-        }
+impl MethodNameError {
+    /// The names that can be used, the nearest one first.
+    pub fn help(&self) -> String {
         let known = METHODS.map(|(name, _)| name);
-        if FUTURE_METHODS.contains(&text) {
-            return Err(format!(
-                "the method \"{text}\" is not supported yet; there are {}",
-                known.join(", ")
-            ));
+        let all = known.join(", ");
+        match self {
+            Self::Unknown(name) => match nearest_name(name, known) {
+                Some(near) => format!("did you mean \"{near}\"? The methods are {all}"),
+                None => format!("the methods are {all}"),
+            },
+            Self::NotSupported(_) => format!("the methods so far are {all}"),
         }
-        Err(match nearest_name(text, known) {
-            Some(near) => format!("unknown method \"{text}\"; did you mean \"{near}\"?"),
-            None => format!("unknown method \"{text}\"; there are {}", known.join(", ")),
-        })
+    }
+}
+
+impl MethodName {
+    /// The method of a name as a scene has it.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such method, or not yet.
+    pub fn parse(name: &str) -> Result<Self, MethodNameError> {
+        match METHODS.iter().find(|(known, _)| *known == name) {
+            Some((_, method)) => Ok(*method),
+            None if FUTURE_METHODS.contains(&name) => Err(MethodNameError::NotSupported(name.to_owned())),
+            None => Err(MethodNameError::Unknown(name.to_owned())),
+        }
+    }
+
+    /// The name as a scene has it.
+    pub fn as_str(self) -> &'static str {
+        METHODS.iter().find(|(_, method)| *method == self).map_or("", |(name, _)| name)
+    }
+}
+
+impl SolverName {
+    /// The name as a scene has it.
+    pub fn as_str(self) -> &'static str {
+        SOLVERS.iter().find(|(_, solver)| *solver == self).map_or("", |(name, _)| name)
     }
 }

@@ -27,6 +27,7 @@ use std::sync::Arc;
 
 pub use error::SceneError;
 pub use expression::ExprField;
+pub use method::MethodNameError;
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
@@ -38,7 +39,7 @@ use source::Source;
 /// A scene file as data; every invariant that can be checked without evaluating a field holds.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// What it shows; the name of the file, if it does not say.
+    /// What it shows.
     pub title: String,
     /// 1, 2 or 3; the length of every vector in the scene.
     pub dimension: usize,

@@ -1,6 +1,5 @@
 //! The file as a whole, and its short sections.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use toml::de::DeTable;
@@ -54,7 +53,7 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     let holes = domain::holes(&root)?;
     let regions = regions::regions(&root)?;
     Ok(Scene {
-        title: title(&root, &source.file)?,
+        title: root.require("title")?.text()?.to_owned(),
         dimension,
         interfaces: regions::interfaces(&root, &regions)?,
         boundaries: boundaries::boundaries(&root, &domain, &holes)?,
@@ -66,15 +65,6 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         holes,
         regions,
     })
-}
-
-fn title(root: &Table<'_>, file: &str) -> Result<String, SceneError> {
-    match root.get("title") {
-        Some(value) => value.text().map(str::to_owned),
-        None => Ok(Path::new(file)
-            .file_stem()
-            .map_or(file.to_owned(), |stem| stem.to_string_lossy().into_owned())),
-    }
 }
 
 fn probes(root: &Table<'_>) -> Result<Vec<Vec<f64>>, SceneError> {
