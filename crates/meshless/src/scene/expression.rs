@@ -61,8 +61,7 @@ impl Value<'_> {
     }
 }
 
-/// `offset` is where the text starts within the place; `None`, if its bytes are not those of the file.
-fn parse(text: &str, place: Place, dimension: usize, offset: Option<usize>) -> Result<ExprField, SceneError> {
+fn parse(text: &str, place: &Place, dimension: usize) -> Result<ExprField, SceneError> {
     let expr = Expr::parse(text, &VARIABLES[..dimension]).map_err(|error| {
         let ParseError { span, message, help } = error;
         let place = match content_offset(place.text(), text) {
