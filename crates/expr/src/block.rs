@@ -1,10 +1,10 @@
 //! A program run over blocks of points: one short loop an instruction, which the compiler vectorises.
 
-use crate::ops::{Binary, Unary, max, min, multiplied_power, powi, select, truth};
+use crate::ops::{Binary, Unary, max, min, multiplied_power, powi, select, squared_difference, truth};
 use crate::program::{Operand, Operation, Program};
 
-/// Points a block: registers of 2 KiB, a dozen of which stay in a first-level cache.
-const BLOCK: usize = 256;
+/// Points a block: registers of 4 KiB, of which a first-level cache holds the few that are in use.
+const BLOCK: usize = 512;
 
 /// The values of one operand over a block.
 #[derive(Clone, Copy)]
@@ -60,6 +60,7 @@ fn execute<'a>(operation: Operation, out: &mut [f64], lane: impl Fn(Operand) -> 
     match operation {
         Operation::Unary(op, a) => unary(op, lane(a), out),
         Operation::Binary(op, a, b) => binary(op, lane(a), lane(b), out),
+        Operation::SquaredDifference(a, b) => zip(lane(a), lane(b), out, squared_difference),
         Operation::Select(c, a, b) => choose(lane(c), lane(a), lane(b), out),
     }
 }

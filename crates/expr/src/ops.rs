@@ -169,6 +169,13 @@ pub(crate) fn select(c: f64, a: f64, b: f64) -> f64 {
     }
 }
 
+/// `(a - b)^2`, with the bits of the difference times itself.
+#[inline]
+pub(crate) fn squared_difference(a: f64, b: f64) -> f64 {
+    let difference = a - b;
+    difference * difference
+}
+
 /// `a^b`, by multiplication for small integer exponents; NaN where either is one (IEEE `pow` gives NaN^0 = 1).
 #[inline]
 pub(crate) fn pow(a: f64, b: f64) -> f64 {

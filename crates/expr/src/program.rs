@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::node::Node;
-use crate::ops::{Binary, Unary, select};
+use crate::ops::{Binary, Unary, select, squared_difference};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Operand {
@@ -18,6 +18,8 @@ pub(crate) enum Operand {
 pub(crate) enum Operation {
     Unary(Unary, Operand),
     Binary(Binary, Operand, Operand),
+    /// `(a - b)^2`, of which distances are made: one pass over a block instead of two.
+    SquaredDifference(Operand, Operand),
     Select(Operand, Operand, Operand),
 }
 
@@ -63,6 +65,9 @@ impl Program {
             registers[instruction.target] = match instruction.operation {
                 Operation::Unary(op, a) => op.apply(fetch(a, registers)),
                 Operation::Binary(op, a, b) => op.apply(fetch(a, registers), fetch(b, registers)),
+                Operation::SquaredDifference(a, b) => {
+                    squared_difference(fetch(a, registers), fetch(b, registers))
+                }
                 Operation::Select(c, a, b) => {
                     select(fetch(c, registers), fetch(a, registers), fetch(b, registers))
                 }
@@ -88,7 +93,7 @@ impl Operation {
     fn operands(&self) -> impl Iterator<Item = Operand> + use<> {
         let operands = match *self {
             Self::Unary(_, a) => [Some(a), None, None],
-            Self::Binary(_, a, b) => [Some(a), Some(b), None],
+            Self::Binary(_, a, b) | Self::SquaredDifference(a, b) => [Some(a), Some(b), None],
             Self::Select(c, a, b) => [Some(c), Some(a), Some(b)],
         };
         operands.into_iter().flatten()
@@ -98,6 +103,7 @@ impl Operation {
         match self {
             Self::Unary(op, a) => Self::Unary(op, f(a)),
             Self::Binary(op, a, b) => Self::Binary(op, f(a), f(b)),
+            Self::SquaredDifference(a, b) => Self::SquaredDifference(f(a), f(b)),
             Self::Select(c, a, b) => Self::Select(f(c), f(a), f(b)),
         }
     }
@@ -115,6 +121,7 @@ enum OperandKey {
 enum OperationKey {
     Unary(Unary, OperandKey),
     Binary(Binary, OperandKey, OperandKey),
+    SquaredDifference(OperandKey, OperandKey),
     Select(OperandKey, OperandKey, OperandKey),
 }
 
@@ -133,6 +140,7 @@ impl From<Operation> for OperationKey {
         match operation {
             Operation::Unary(op, a) => Self::Unary(op, a.into()),
             Operation::Binary(op, a, b) => Self::Binary(op, a.into(), b.into()),
+            Operation::SquaredDifference(a, b) => Self::SquaredDifference(a.into(), b.into()),
             Operation::Select(c, a, b) => Self::Select(c.into(), a.into(), b.into()),
         }
     }
@@ -154,7 +162,10 @@ impl Numbering {
             Node::Variable(index) => return Operand::Variable(*index),
             _ if self.visited.contains_key(&Arc::as_ptr(node)) => return self.visited[&Arc::as_ptr(node)],
             Node::Unary(op, a) => Operation::Unary(*op, self.visit(a)),
-            Node::Binary(op, a, b) => Operation::Binary(*op, self.visit(a), self.visit(b)),
+            Node::Binary(op, a, b) => match squared_operands(*op, a, b) {
+                Some((a, b)) => Operation::SquaredDifference(self.visit(a), self.visit(b)),
+                None => Operation::Binary(*op, self.visit(a), self.visit(b)),
+            },
             Node::If(c, a, b) => Operation::Select(self.visit(c), self.visit(a), self.visit(b)),
         };
         let operations = &mut self.operations;
@@ -165,6 +176,18 @@ impl Numbering {
         let operand = Operand::Register(index);
         self.visited.insert(Arc::as_ptr(node), operand);
         operand
+    }
+}
+
+/// The operands a and b of `(a - b)^2`.
+fn squared_operands<'a>(
+    op: Binary,
+    base: &'a Node,
+    exponent: &Node,
+) -> Option<(&'a Arc<Node>, &'a Arc<Node>)> {
+    match base {
+        Node::Binary(Binary::Sub, a, b) if op == Binary::Pow && exponent.is(2.0) => Some((a, b)),
+        _ => None,
     }
 }
 

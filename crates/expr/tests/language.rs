@@ -82,6 +82,9 @@ fn repeated_subexpressions_are_computed_once_and_kept() {
     let x: f64 = 0.3;
     let direct = x.sin() * x.sin() + (x.cos() + x.tan()) * (x.cos() - x.tan()) - x.exp();
     assert_eq!(e.eval(&[x]), direct);
+    let e = Expr::parse("(x - 1)^2*(x - 1) + (1 - x)^2 + (x - 1)^3", &["x"]).expect("valid");
+    let d: f64 = x - 1.0;
+    assert_eq!(e.eval(&[x]), d * d * d + d * d + d * (d * d));
 }
 
 #[test]

@@ -154,7 +154,7 @@ proptest! {
     }
 
     #[test]
-    fn blocks_of_points_give_the_bits_of_single_points(tree in tree(false), seed in point(), n in 0usize..600) {
+    fn blocks_of_points_give_the_bits_of_single_points(tree in tree(false), seed in point(), n in 0usize..1200) {
         let e = parse(&tree.text());
         let points: Vec<[f64; 2]> =
             (0..n).map(|i| [seed[0] + 0.01 * i as f64, seed[1] - 0.013 * i as f64]).collect();
