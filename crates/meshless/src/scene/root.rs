@@ -36,9 +36,7 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     if source.text.len() > MAX_FILE_BYTES {
         return Err(source.too_long(source.text.len() as u64));
     }
-    let parsed = DeTable::parse(&source.text).map_err(|error| {
-        Place::new(source, "", error.span().unwrap_or(0..0)).error(error.message().replace('\n', ", "), "")
-    })?;
+    let parsed = DeTable::parse(&source.text).map_err(|error| not_toml(source, &error))?;
     let root = Table::root(source, parsed.get_ref());
     root.allow(&KEYS)?;
     for (key, help) in FUTURE_SECTIONS {
@@ -65,6 +63,16 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         holes,
         regions,
     })
+}
+
+/// A syntax error: the parser knows the bytes, not the key.
+fn not_toml(source: &Arc<Source>, error: &toml::de::Error) -> SceneError {
+    let place = Place::new(source, "", error.span().unwrap_or(0..0));
+    let message = match error.message() {
+        "duplicate key" => format!("duplicate key `{}`", place.text().escape_debug()),
+        other => format!("not valid TOML: {}", other.replace('\n', ", ")),
+    };
+    place.error(message, "")
 }
 
 fn probes(root: &Table<'_>) -> Result<Vec<Vec<f64>>, SceneError> {

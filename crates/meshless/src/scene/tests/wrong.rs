@@ -8,8 +8,8 @@ fn syntax() {
     check_all(
         PLATE,
         &[
-            wrong("seed = 7", "seed = «7 8»", "", "", ""),
-            wrong("seed = 7", "seed = 7\n«seed» = 8", "", "duplicate key", ""),
+            wrong("seed = 7", "seed = «7 8»", "", "not valid TOML", ""),
+            wrong("seed = 7", "seed = 7\n«seed» = 8", "", "duplicate key `seed`", ""),
         ],
     );
 }
