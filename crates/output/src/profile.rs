@@ -37,7 +37,7 @@ impl Profile {
             series.push(Series {
                 name: "exact".to_owned(),
                 points: self.exact.clone(),
-                stroke: Stroke::Line,
+                stroke: Stroke::Curve,
             });
         }
         let (x, y) = (Axis::linear(&self.x_label), Axis::linear(&self.u_label));

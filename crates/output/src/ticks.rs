@@ -74,7 +74,7 @@ fn superscript(exponent: i32) -> String {
 }
 
 /// The number with a minus sign instead of a hyphen.
-fn minus(number: &str) -> String {
+pub(crate) fn minus(number: &str) -> String {
     number.replace('-', "−")
 }
 

@@ -25,6 +25,11 @@ const TICK_SIZE: f64 = 12.0;
 /// Width of a character, relative to the font size: what a sans-serif font has on average.
 const CHARACTER_WIDTH: f64 = 0.58;
 
+/// Radius of a marker, and of the markers of a series with many points.
+const MARKER: f64 = 4.2;
+const SMALL_MARKER: f64 = 2.4;
+const MANY_POINTS: usize = 25;
+
 const INK: RGBColor = RGBColor(40, 40, 40);
 const PALE: RGBColor = RGBColor(236, 236, 236);
 const GRID: RGBColor = RGBColor(212, 212, 212);
@@ -61,12 +66,15 @@ fn draw(chart: &Chart, root: &Area, width: f64, height: f64) -> Result<(), Outpu
         .margin_right(px(16.0))
         .margin_bottom(px(6.0))
         .margin_left(px(6.0))
-        .x_label_area_size(px(TICK_SIZE + LABEL_SIZE + 22.0))
+        .x_label_area_size(px(TICK_SIZE + LABEL_SIZE + 15.0))
         .y_label_area_size(px(longest(&frame.y) * TICK_SIZE * CHARACTER_WIDTH + LABEL_SIZE + 22.0));
     let mut context = builder.build_cartesian_2d(frame.x.clone(), frame.y.clone()).map_err(failed)?;
     mesh(chart, &frame, &mut context)?;
     references(&frame, &mut context)?;
-    for (number, series) in chart.series.iter().enumerate() {
+    // Exact curves lie beneath the points that are compared with them.
+    let numbered = chart.series.iter().enumerate();
+    let (curves, others): (Vec<_>, Vec<_>) = numbered.partition(|(_, series)| series.stroke == Stroke::Curve);
+    for (number, series) in curves.into_iter().chain(others) {
         draw_series(number, series, &frame.runs[number], &mut context)?;
     }
     write(root, &chart.title, (0.5 * (width - legend), 18.0), TITLE_SIZE, INK, HPos::Center)?;
@@ -158,9 +166,8 @@ fn references(frame: &Frame, context: &mut Context) -> Result<(), OutputError> {
         let style = REFERENCE.stroke_width(px(1.1).unsigned_abs());
         let dashes = DashedPathElement::new([line.from, line.to], px(6.0), px(4.0), style);
         context.draw_series([dashes]).map_err(failed)?;
-        let text = font(TICK_SIZE - 1.0).color(&REFERENCE).pos(Pos::new(HPos::Right, VPos::Top));
-        let at = (line.to.0, line.to.1);
-        let label = EmptyElement::at(at) + Text::new(line.label.clone(), (px(-2.0), px(6.0)), text);
+        let style = font(TICK_SIZE - 1.0).color(&REFERENCE).pos(Pos::new(HPos::Left, VPos::Center));
+        let label = EmptyElement::at(line.to) + Text::new(line.label.clone(), (px(6.0), 0), style);
         context.draw_series([label]).map_err(failed)?;
     }
     Ok(())
@@ -171,19 +178,26 @@ fn hue(number: usize) -> RGBColor {
     RGBColor(r, g, b)
 }
 
+fn line(number: usize, series: &Series) -> ShapeStyle {
+    match series.stroke {
+        Stroke::Curve => INK.stroke_width(px(1.0).unsigned_abs()),
+        _ => hue(number).stroke_width(px(1.6).unsigned_abs()),
+    }
+}
+
 fn draw_series(
     number: usize,
     series: &Series,
     runs: &[Vec<Place>],
     context: &mut Context,
 ) -> Result<(), OutputError> {
-    let line = hue(number).stroke_width(px(1.6).unsigned_abs());
+    let points: usize = runs.iter().map(Vec::len).sum();
     for run in runs {
-        if series.stroke != Stroke::Markers {
-            context.draw_series([PathElement::new(run.clone(), line)]).map_err(failed)?;
+        if series.stroke.has_line() {
+            context.draw_series([PathElement::new(run.clone(), line(number, series))]).map_err(failed)?;
         }
-        if series.stroke != Stroke::Line {
-            let size = if run.len() > 60 { 2.2 } else { 4.2 };
+        if series.stroke.has_markers() {
+            let size = if points > MANY_POINTS { SMALL_MARKER } else { MARKER };
             let marks = run.iter().map(|&at| {
                 let (area, edge) = marker(number, size);
                 EmptyElement::at(at) + area + edge
@@ -251,13 +265,12 @@ fn draw_legend(chart: &Chart, side: &Area, width: f64) -> Result<(), OutputError
     let room = ((width - 48.0) / (TICK_SIZE * CHARACTER_WIDTH)).max(1.0).round() as usize;
     for (row, (number, series)) in named.enumerate() {
         let y = 46.0 + 20.0 * row as f64;
-        if series.stroke != Stroke::Markers {
+        if series.stroke.has_line() {
             let ends = vec![(px(2.0), px(y)), (px(30.0), px(y))];
-            side.draw(&PathElement::new(ends, hue(number).stroke_width(px(1.6).unsigned_abs())))
-                .map_err(failed)?;
+            side.draw(&PathElement::new(ends, line(number, series))).map_err(failed)?;
         }
-        if series.stroke != Stroke::Line {
-            let (area, edge) = marker(number, 4.2);
+        if series.stroke.has_markers() {
+            let (area, edge) = marker(number, MARKER);
             side.draw(&(EmptyElement::at((px(16.0), px(y))) + area + edge)).map_err(failed)?;
         }
         let mut name: String = series.name.chars().take(room).collect();

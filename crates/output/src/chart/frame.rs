@@ -1,10 +1,13 @@
 //! What a chart shows and where: visible points in axis coordinates, ranges, ticks, reference lines.
 
 use super::{Axis, Chart, Scale, Series};
-use crate::ticks::{label, linear_ticks, log_ticks};
+use crate::ticks::{label, linear_ticks, log_ticks, minus};
 
 /// Room beside the outermost points, as a fraction of the range.
 const MARGIN: f64 = 0.06;
+
+/// Room at the right for the labels of reference lines, as a fraction of the range.
+const REFERENCE_ROOM: f64 = 0.12;
 
 /// How far below the data a reference line passes, in decades.
 const REFERENCE_GAP: f64 = 0.25;
@@ -55,7 +58,8 @@ impl Frame {
             let lowest = references.iter().map(|r| r.from.1.min(r.to.1)).fold(f64::INFINITY, f64::min);
             y_lo = y_lo.min(lowest.max(y_lo - 0.35 * (y_hi - y_lo) - REFERENCE_GAP));
         }
-        let x = range(&chart.x, x_lo, x_hi, x_ticks);
+        let room = if references.is_empty() { 0.0 } else { REFERENCE_ROOM * (x_hi - x_lo) };
+        let x = range(&chart.x, x_lo, x_hi + room, x_ticks);
         let y = range(&chart.y, y_lo, y_hi, y_ticks);
         references.iter_mut().for_each(|line| line.clip_below(y.lo));
         Some(Self { x, y, runs, references })
@@ -80,7 +84,7 @@ impl Reference {
 fn reference(order: f64, places: &[Place], x_lo: f64, x_hi: f64) -> Reference {
     let lowest = places.iter().map(|p| p.1 - order * p.0).fold(f64::INFINITY, f64::min) - REFERENCE_GAP;
     let at = |x: f64| (x, lowest + order * x);
-    Reference { from: at(x_lo), to: at(x_hi), label: format!("slope {}", label(order, 0.0)) }
+    Reference { from: at(x_lo), to: at(x_hi), label: format!("slope {}", minus(&order.to_string())) }
 }
 
 fn visible_runs(series: &Series, chart: &Chart) -> Vec<Vec<Place>> {

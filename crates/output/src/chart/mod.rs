@@ -46,6 +46,18 @@ pub enum Stroke {
     Line,
     /// Markers only, for scattered points.
     Markers,
+    /// A thin dark line beneath everything else, for an exact solution.
+    Curve,
+}
+
+impl Stroke {
+    fn has_line(self) -> bool {
+        self != Self::Markers
+    }
+
+    fn has_markers(self) -> bool {
+        matches!(self, Self::LineAndMarkers | Self::Markers)
+    }
 }
 
 /// A named list of points.

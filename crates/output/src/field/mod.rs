@@ -1,5 +1,10 @@
 //! Pictures of a scalar field on a plane rectangle.
 
+mod draw;
+mod frame;
+mod levels;
+
+use crate::contour::Domain;
 use crate::error::OutputError;
 
 /// A point of interest that is marked and named in a picture.
@@ -64,7 +69,41 @@ impl FieldPicture {
     /// [`OutputError::Grid`] or [`OutputError::Length`] if the grid is none or a list does not belong to it,
     /// [`OutputError::Size`] if there is no room for the labels.
     pub fn to_svg(&self, width: u32) -> Result<String, OutputError> {
-        let _ = width;
-        Ok("<svg></svg>\n".to_owned())
+        self.check()?;
+        if !(200..=10_000).contains(&width) {
+            return Err(OutputError::Size { width, height: width });
+        }
+        Ok(draw::picture(self, width))
+    }
+
+    fn check(&self) -> Result<(), OutputError> {
+        let &Self { min, max, nx, ny, .. } = self;
+        let extended = (0..2).all(|axis| min[axis] < max[axis] && (max[axis] - min[axis]).is_finite());
+        if nx < 2 || ny < 2 || !extended {
+            return Err(OutputError::Grid { nx, ny, min, max });
+        }
+        let length = |name: &str, found: usize| {
+            let expected = nx * ny;
+            if found == expected {
+                Ok(())
+            } else {
+                Err(OutputError::Length { name: name.to_owned(), expected, found })
+            }
+        };
+        length("values", self.values.len())?;
+        length("labels", self.labels.as_ref().map_or(nx * ny, Vec::len))?;
+        length("mask", self.mask.as_ref().map_or(nx * ny, Vec::len))?;
+        self.interfaces.iter().try_for_each(|level| length("interfaces", level.len()))
+    }
+
+    fn domain<'a>(&'a self, values: &'a [f64]) -> Domain<'a> {
+        Domain {
+            nx: self.nx,
+            ny: self.ny,
+            values,
+            labels: self.labels.as_deref(),
+            mask: self.mask.as_deref(),
+            interfaces: &self.interfaces,
+        }
     }
 }
