@@ -244,3 +244,72 @@ impl<const D: usize> Domain<D> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    fn plate() -> Domain<2> {
+        Domain::boxed([0.0, 0.0], [2.0, 1.0])
+            .unwrap()
+            .with_hole("rod", Shape::ball([0.5, 0.5], 0.25).unwrap())
+            .unwrap()
+    }
+
+    #[test]
+    fn faces_and_holes() {
+        let d = plate();
+        assert_eq!(d.faces(), ["left", "right", "bottom", "top", "rod"]);
+        assert_eq!((d.face("rod"), d.face("outer")), (Some(FaceId(4)), None));
+        assert_eq!(d.level(&[0.5, 0.5]), 0.25);
+        assert_eq!(d.level(&[1.5, 0.25]), -0.25);
+        assert_eq!(d.gradient(&[0.5, 0.875]), [0.0, 1.0]);
+        assert_eq!(d.gradient(&[0.5, 0.78]), [0.0, -1.0]);
+        let curved = d.curved_faces();
+        assert_eq!((curved.len(), curved[0].0, curved[0].2), (1, FaceId(4), true));
+        assert!(d.clone().with_hole("rod", Shape::ball([1.5, 0.5], 0.2).unwrap()).is_err());
+        assert!(d.clone().with_hole("all", Shape::ball([1.0, 0.5], 2.0).unwrap()).is_err());
+    }
+
+    #[test]
+    fn projections_point_out_of_the_domain() {
+        let d = plate();
+        let p = d.project_to_face(FaceId(4), &[0.5, 0.85]).unwrap();
+        assert_eq!(p.normal, [0.0, -1.0]);
+        assert!((p.distance + 0.1).abs() < 1e-15 && (p.point[1] - 0.75).abs() < 1e-15);
+        let p = d.project_to_face(FaceId(1), &[1.5, 0.25]).unwrap();
+        assert_eq!((p.point, p.normal, p.distance), ([2.0, 0.25], [1.0, 0.0], -0.5));
+        let p = d.project_to_face(FaceId(0), &[-0.5, 0.25]).unwrap();
+        assert_eq!((p.point, p.distance), ([0.0, 0.25], 0.5));
+    }
+
+    #[test]
+    fn membership_has_a_tolerance_that_is_a_length() {
+        let steep: Shape<2> =
+            Shape::level_set(Arc::new(|x: &[f64; 2]| 1e3 * (x[0] * x[0] + x[1] * x[1] - 1.0)));
+        let d = Domain::from_shape(steep, Some(Aabb::new([-2.0; 2], [2.0; 2]).unwrap())).unwrap();
+        assert!(d.contains(&[1.0, 0.0], 0.0) && d.contains(&[1.01, 0.0], 0.02));
+        assert!(!d.contains(&[1.01, 0.0], 0.0) && !d.contains(&[1.01, 0.0], 0.005));
+    }
+
+    #[test]
+    fn measures() {
+        let pi = std::f64::consts::PI;
+        assert_eq!(Domain::boxed([0.0; 3], [2.0, 3.0, 4.0]).unwrap().measure_estimate(), 24.0);
+        assert!((plate().measure_estimate() - (2.0 - pi / 16.0)).abs() < 2e-3);
+        let ball = Domain::from_shape(Shape::ball([1.0; 3], 1.0).unwrap(), None).unwrap();
+        assert!((ball.measure_estimate() - 4.0 / 3.0 * pi).abs() < 8e-3);
+    }
+
+    #[test]
+    fn domains_without_bounds_or_points_are_refused() {
+        let disc: Shape<2> = Shape::level_set(Arc::new(|x: &[f64; 2]| x[0] * x[0] + x[1] * x[1] - 1.0));
+        assert!(Domain::from_shape(disc.clone(), None).is_err());
+        let cuts = Aabb::new([-0.5; 2], [2.0; 2]).unwrap();
+        assert!(Domain::from_shape(disc.clone(), Some(cuts)).is_err());
+        let beside = Aabb::new([2.0; 2], [3.0; 2]).unwrap();
+        assert!(Domain::from_shape(disc, Some(beside)).is_err());
+        assert!(Domain::boxed([0.0; 4], [1.0; 4]).is_err());
+    }
+}

@@ -21,3 +21,23 @@ pub(crate) fn morton_order<const D: usize>(points: &[[f64; D]], bounds: &Aabb<D>
     order.sort_unstable();
     order.into_iter().map(|(_, i)| i).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_four_quadrants_come_one_after_the_other() {
+        let bounds = Aabb { min: [0.0, 0.0], max: [4.0, 4.0] };
+        let points: Vec<[f64; 2]> =
+            (0..16).map(|i| [f64::from(i % 4) + 0.5, f64::from(i / 4) + 0.5]).collect();
+        let order = morton_order(&points, &bounds);
+        assert_eq!(order, [0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15]);
+    }
+
+    #[test]
+    fn points_on_the_upper_faces_are_in_range() {
+        let bounds = Aabb { min: [0.0; 3], max: [1.0; 3] };
+        assert_eq!(morton_order(&[[1.0; 3], [0.0; 3]], &bounds), [1, 0]);
+    }
+}

@@ -169,3 +169,33 @@ fn bisect<const D: usize>(
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::level_set::LevelSet;
+
+    fn foot(f: impl LevelSet<2>, x: [f64; 2], reach: f64) -> Result<Projection<2>, ProjectionError> {
+        project(&|y| f.value(y), &|y| f.gradient(y), &x, reach)
+    }
+
+    #[test]
+    fn bisection_helps_where_the_gradient_misleads() {
+        // Almost flat away from the circle: a Newton step from here leads a thousand radii away.
+        let f = |x: &[f64; 2]| ((x[0] * x[0] + x[1] * x[1] - 1.0) * 20.0).tanh();
+        let p = foot(f, [1.3, 0.4], 1.0).unwrap();
+        let r = 1.3_f64.hypot(0.4);
+        assert!((p.distance - (r - 1.0)).abs() < 1e-9);
+        assert!((p.point[0] - 1.3 / r).abs() < 1e-8);
+    }
+
+    #[test]
+    fn points_without_a_foot_are_told_why() {
+        let circle = |x: &[f64; 2]| x[0] * x[0] + x[1] * x[1] - 1.0;
+        assert!(matches!(foot(circle, [3.0, 0.0], 1.0), Err(ProjectionError::OutOfReach { .. })));
+        let never = |x: &[f64; 2]| x[0] * x[0] + 1.0;
+        assert!(matches!(foot(never, [0.3, 0.0], 1.0), Err(ProjectionError::OutOfReach { .. })));
+        let bad = |x: &[f64; 2]| (x[0] - 1.0).sqrt();
+        assert!(matches!(foot(bad, [0.0, 0.0], 1.0), Err(ProjectionError::NotFinite { .. })));
+    }
+}

@@ -15,7 +15,7 @@ impl<const D: usize> Kronecker<D> {
         let phi = match D {
             1 => 1.618_033_988_749_895,
             2 => 1.324_717_957_244_746,
-            _ => 1.220_744_084_605_760,
+            _ => 1.220_744_084_605_76,
         };
         let mut power = 1.0;
         let alpha = std::array::from_fn(|_| {

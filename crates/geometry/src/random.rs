@@ -27,3 +27,33 @@ impl Random {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_unit_vectors_without_a_preference() {
+        let mut random = Random::new(1);
+        let n = 20_000;
+        let mut sum = [0.0; 3];
+        let mut squares = [0.0; 3];
+        for _ in 0..n {
+            let d: [f64; 3] = random.direction();
+            assert!((dot(&d, &d) - 1.0).abs() < 1e-14);
+            for i in 0..3 {
+                sum[i] += d[i] / f64::from(n);
+                squares[i] += d[i] * d[i] / f64::from(n);
+            }
+        }
+        // Five standard deviations of the means: 1/sqrt(3n) and sqrt(4/45n).
+        assert!(sum.iter().all(|s| s.abs() < 0.021), "{sum:?}");
+        assert!(squares.iter().all(|s| (s - 1.0 / 3.0).abs() < 0.011), "{squares:?}");
+    }
+
+    #[test]
+    fn numbers_stay_in_range() {
+        let mut random = Random::new(2);
+        assert!((0..10_000).all(|_| (-1.0..1.0).contains(&random.symmetric())));
+    }
+}

@@ -87,7 +87,7 @@ impl<const D: usize> SpatialHash<D> {
 
     fn grow(&mut self, k: usize) {
         let level = &mut self.levels[k];
-        let old = std::mem::replace(&mut level.head, Vec::new());
+        let old = std::mem::take(&mut level.head);
         level.head = vec![END; 4 * old.len()];
         for mut id in old {
             while id != END {
@@ -128,6 +128,18 @@ impl<const D: usize> SpatialHash<D> {
         best.map(|id| (id, distance(x, &self.points[id as usize])))
     }
 
+    #[inline]
+    fn any_in_slot(&self, first: u32, x: &[f64; D], test: &mut impl FnMut(u32, f64) -> bool) -> bool {
+        let mut id = first;
+        while id != END {
+            if test(id, distance_squared(x, &self.points[id as usize])) {
+                return true;
+            }
+            id = self.next[id as usize];
+        }
+        false
+    }
+
     /// Whether `test(node, squared distance)` holds for some node in the cells that a ball meets. A node can be
     /// tested more than once.
     fn any_near(
@@ -139,17 +151,19 @@ impl<const D: usize> SpatialHash<D> {
     ) -> bool {
         let low: [i64; D] = std::array::from_fn(|i| ((x[i] - reach) * level.inverse_cell).floor() as i64);
         let high: [i64; D] = std::array::from_fn(|i| ((x[i] + reach) * level.inverse_cell).floor() as i64);
+        let cells: f64 = (0..D).map(|i| high[i].saturating_sub(low[i]) as f64 + 1.0).product();
+        if cells > level.head.len() as f64 {
+            // A ball that is large for this level: reading every slot is less work.
+            return (0..level.head.len()).any(|slot| self.any_in_slot(level.head[slot], x, &mut test));
+        }
         let mask = level.head.len() - 1;
         let mut row = low;
         loop {
             let base = hash_row(&row);
             for column in low[0]..=high[0] {
-                let mut id = level.head[base.wrapping_add(column) as usize & mask];
-                while id != END {
-                    if test(id, distance_squared(x, &self.points[id as usize])) {
-                        return true;
-                    }
-                    id = self.next[id as usize];
+                let slot = base.wrapping_add(column) as usize & mask;
+                if self.any_in_slot(level.head[slot], x, &mut test) {
+                    return true;
                 }
             }
             let Some(axis) = (1..D).find(|&i| row[i] < high[i]) else { return false };
@@ -173,4 +187,51 @@ fn hash_row<const D: usize>(cell: &[i64; D]) -> i64 {
 /// The power of two at or below a positive number.
 fn exponent(v: f64) -> i32 {
     ((v.to_bits() >> 52) & 0x7ff) as i32 - 1023
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Nodes with spacings over three powers of ten.
+    fn filled<const D: usize>(random: &mut Random) -> SpatialHash<D> {
+        let mut hash = SpatialHash::new();
+        for _ in 0..3000 {
+            let x = std::array::from_fn(|_| random.symmetric());
+            hash.insert(x, 10.0_f64.powf(1.5 * random.symmetric() - 1.5));
+        }
+        hash
+    }
+
+    fn agrees_with_all_pairs<const D: usize>() {
+        let mut random = Random::new(3);
+        let hash: SpatialHash<D> = filled(&mut random);
+        for _ in 0..300 {
+            let x: [f64; D] = std::array::from_fn(|_| 1.2 * random.symmetric());
+            let h = 10.0_f64.powf(1.5 * random.symmetric() - 1.5);
+            let distances: Vec<f64> = hash.points().iter().map(|p| distance(&x, p)).collect();
+            let conflict = distances.iter().zip(hash.spacing()).any(|(d, s)| *d < 0.8 * h.min(*s));
+            assert_eq!(hash.conflicts(&x, h, 0.8), conflict);
+            let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+            let found = hash.nearest(&x, h, None);
+            assert_eq!(found.map(|(_, d)| d), (nearest < h).then_some(nearest));
+        }
+    }
+
+    #[test]
+    fn queries_agree_with_all_pairs() {
+        agrees_with_all_pairs::<1>();
+        agrees_with_all_pairs::<2>();
+        agrees_with_all_pairs::<3>();
+    }
+
+    #[test]
+    fn a_node_can_be_left_out() {
+        let mut hash = SpatialHash::new();
+        hash.insert([0.0, 0.0], 1.0);
+        hash.insert([0.5, 0.0], 1.0);
+        assert_eq!(hash.nearest(&[0.0, 0.0], 1.0, Some(0)), Some((1, 0.5)));
+        assert_eq!(hash.nearest(&[0.0, 0.0], 0.4, Some(0)), None);
+    }
 }

@@ -22,7 +22,7 @@ fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
 
 /// Nodes that are deeper inside than three spacings, over their number if each had the volume `s^D`.
 fn density<const D: usize>(domain: &Domain<D>, layout: Layout, spacing: f64) -> f64 {
-    let cloud = generate(domain, &params(spacing, layout)).unwrap();
+    let cloud = generate(domain, &params(spacing, layout)).expect("a cloud");
     // A depth half-way between lattice planes, where counting is fair to lattices too.
     let depth = 2.5 * spacing;
     let inner: f64 = domain.bounds().lengths().iter().map(|l| l - 2.0 * depth).product();

@@ -31,7 +31,7 @@ fn star(points: usize, inner: f64) -> Vec<[f64; 2]> {
 }
 
 fn check_projection<const D: usize>(shape: &Shape<D>, x: &[f64; D]) {
-    let p = shape.project(x, 10.0).unwrap();
+    let p = shape.project(x, 10.0).expect("it exists");
     let slope = norm(&shape.gradient(&p.point));
     assert!(shape.level(&p.point).abs() <= 1e-11 * slope.max(1.0), "{shape:?} {x:?} {p:?}");
     assert!((norm(&p.normal) - 1.0).abs() < 1e-12);
@@ -44,7 +44,7 @@ fn clouds_agree<const D: usize>(a: &Cloud<D>, b: &Cloud<D>) -> bool {
 }
 
 fn check_cloud<const D: usize>(domain: &Domain<D>, params: &CloudParams<D>) -> Cloud<D> {
-    let cloud = generate(domain, params).unwrap();
+    let cloud = generate(domain, params).expect("it exists");
     let q = quality(&cloud, domain);
     assert!(q.relative_separation > 0.75, "separation {q:?}");
     assert!(q.relative_fill < 1.35, "fill {q:?}");
@@ -63,7 +63,7 @@ fn check_cloud<const D: usize>(domain: &Domain<D>, params: &CloudParams<D>) -> C
     for b in cloud.boundary() {
         let x = &cloud.points()[b.node as usize];
         for t in &b.touches {
-            let p = domain.project_to_face(t.face, x).unwrap();
+            let p = domain.project_to_face(t.face, x).expect("it exists");
             assert!(p.distance.abs() < 1e-9, "node at {x:?} is not on face {:?}", t.face);
         }
         if let [t] = b.touches[..] {
@@ -127,7 +127,7 @@ proptest! {
 
     #[test]
     fn level_sets_that_are_no_distances_are_projected_onto(
-        t in 0.0..6.28f64,
+        t in 0.0..std::f64::consts::TAU,
         offset in -0.2..0.6f64,
         steep in 0.5..8.0f64,
     ) {
@@ -184,7 +184,7 @@ proptest! {
     }
 
     #[test]
-    fn rounding_does_not_flip_labels(t in 0.0..6.28f64, noise in prop::array::uniform2(-1e-14..1e-14f64)) {
+    fn rounding_does_not_flip_labels(t in 0.0..std::f64::consts::TAU, noise in prop::array::uniform2(-1e-14..1e-14f64)) {
         let map = RegionMap::new(vec![Some(Shape::ball([0.2, 0.1], 0.7).unwrap()), None]).unwrap();
         let x = [0.2 + 0.7 * t.cos() + noise[0], 0.1 + 0.7 * t.sin() + noise[1]];
         prop_assert_eq!(map.label(&x, 0.05), 0);

@@ -6,10 +6,10 @@ use meshless_geometry::{
 };
 
 fn square_grid() -> (Domain<2>, Cloud<2>) {
-    let domain = Domain::boxed([-1.0; 2], [1.0; 2]).unwrap();
+    let domain = Domain::boxed([-1.0; 2], [1.0; 2]).expect("a square");
     let params =
         CloudParams { spacing: Spacing::Uniform(0.1), layout: Layout::Grid, seed: 0, max_nodes: 1000 };
-    let cloud = generate(&domain, &params).unwrap();
+    let cloud = generate(&domain, &params).expect("a grid");
     (domain, cloud)
 }
 
@@ -28,7 +28,7 @@ fn pairs(cloud: &Cloud<2>) -> Vec<(u32, u32)> {
 }
 
 fn ball(x: f64, y: f64, r: f64) -> Shape<2> {
-    Shape::ball([x, y], r).unwrap()
+    Shape::ball([x, y], r).expect("a positive radius")
 }
 
 #[test]

@@ -137,8 +137,8 @@ fn between<const D: usize>(
 fn cut<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     subset: &[usize],
-    stations: &mut Vec<Station<D>>,
-    valid: &mut Vec<bool>,
+    stations: &mut [Station<D>],
+    valid: &mut [bool],
 ) -> Result<(), GeometryError> {
     let mut i = 1;
     while i < valid.len() {

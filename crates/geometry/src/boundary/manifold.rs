@@ -55,7 +55,7 @@ fn newton_step<const D: usize>(patches: &[&Patch<'_, D>], p: &[f64; D]) -> Optio
     }
     // Symmetric and positive definite: elimination needs no exchange of rows.
     for i in 0..k {
-        if !(gram[i][i] > PIVOT) {
+        if gram[i][i].is_nan() || gram[i][i] <= PIVOT {
             return None;
         }
         for j in i + 1..k {

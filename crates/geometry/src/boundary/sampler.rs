@@ -144,7 +144,6 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// The cells of about one spacing near which there are patches.
     pub(crate) fn boundary_cells(&self, lattice: bool) -> Result<Vec<BoundaryCell<D>>, GeometryError> {
         let mut cells = Vec::new();
-        let wanted = |near: &[usize]| !near.is_empty() && !(lattice && self.covered_by_lattice(near));
         let bounds = self.domain.bounds();
         for_each_cell(
             &bounds,
@@ -159,7 +158,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
                 let near: Vec<usize> = (0..self.patches.len())
                     .filter(|&k| self.patches[k].distance(&cell.center) <= reach)
                     .collect();
-                if wanted(&near) {
+                let covered = lattice && self.covered_by_lattice(&near);
+                if !near.is_empty() && !covered {
                     cells.push(BoundaryCell { cell: *cell, near });
                 }
                 if cells.len() > 64 * self.limit.max(1000) {

@@ -89,7 +89,7 @@ fn accept<const D: usize>(
         return Ok(false);
     }
     let level = sampler.domain.level(&x);
-    if !(level < 0.0) {
+    if level.is_nan() || level >= 0.0 {
         return Ok(false);
     }
     let h = sampler.spacing.at(&x)?;

@@ -12,7 +12,7 @@ mod validate;
 pub use estimate::estimate_nodes;
 pub(crate) use estimate::too_many;
 pub use generate::generate;
-pub use params::{CloudParams, Layout, Spacing};
+pub use params::{CloudParams, Layout, Spacing, SpacingFn};
 pub use quality::{CloudQuality, quality};
 
 use crate::domain::FaceId;

@@ -14,6 +14,9 @@ pub enum Layout {
     Irregular,
 }
 
+/// A spacing as a function of position.
+pub type SpacingFn<const D: usize> = dyn Fn(&[f64; D]) -> f64 + Send + Sync;
+
 /// The distance between nodes that is aimed at: `s` means about `1 / s^D` nodes a unit of volume.
 #[derive(Clone)]
 pub enum Spacing<const D: usize> {
@@ -21,7 +24,7 @@ pub enum Spacing<const D: usize> {
     Uniform(f64),
     /// A function of position; it should change by less than about its half over its own length. Irregular layout
     /// only.
-    Graded(Arc<dyn Fn(&[f64; D]) -> f64 + Send + Sync>),
+    Graded(Arc<SpacingFn<D>>),
 }
 
 impl<const D: usize> Spacing<D> {

@@ -37,7 +37,7 @@ pub(super) fn check<const D: usize>(
         }
         for t in &b.touches {
             let length = norm(&t.normal);
-            if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+            if length.is_nan() || (length - 1.0).abs() > UNIT_TOLERANCE {
                 return Err(GeometryError::cloud(format!("a normal of node {i} has length {length}, not 1")));
             }
         }

@@ -105,3 +105,49 @@ fn polygon_gradient<const D: usize>(p: &Polygon, x: &[f64; D]) -> [f64; D] {
     let g = if on_edge { nearest.edge_normal } else { away.unwrap_or(nearest.edge_normal) };
     std::array::from_fn(|i| g[i])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Shape;
+
+    #[test]
+    fn closed_forms() {
+        let cube = Shape::cuboid([0.0; 3], [1.0, 2.0, 3.0]).unwrap();
+        assert_eq!(cube.level(&[0.5, 0.5, 0.25]), -0.25);
+        assert_eq!(cube.level(&[4.0, 6.0, 3.0]), 5.0);
+        let rod = Shape::cylinder([0.0; 3], [0.0, 0.0, 2.0], 1.0, Some(4.0)).unwrap();
+        assert_eq!(rod.level(&[0.0, 0.5, 0.0]), -0.5);
+        assert_eq!(rod.level(&[0.0, 0.0, 1.75]), -0.25);
+        assert_eq!(rod.level(&[0.0, 4.0, 6.0]), 5.0);
+        let plane = Shape::half_space([1.0, 0.0], [2.0, 0.0]).unwrap();
+        assert_eq!(plane.level(&[3.0, 7.0]), 2.0);
+    }
+
+    #[test]
+    fn composites_follow_their_parts() {
+        let (a, b) = (Shape::ball([0.0], 1.0).unwrap(), Shape::ball([1.0], 1.0).unwrap());
+        let union = Shape::union(vec![a.clone(), b.clone()]).unwrap();
+        let both = Shape::intersection(vec![a.clone(), b.clone()]).unwrap();
+        let rest = a.difference(b);
+        for (x, levels, gradients) in [
+            ([-0.5], [-0.5, 0.5, -0.5], [-1.0, -1.0, -1.0]),
+            ([0.75], [-0.75, -0.25, 0.75], [-1.0, 1.0, 1.0]),
+            ([1.75], [-0.25, 0.75, 0.75], [1.0, 1.0, 1.0]),
+        ] {
+            let shapes = [&union, &both, &rest];
+            assert_eq!(shapes.map(|s| s.level(&x)), levels, "{x:?}");
+            assert_eq!(shapes.map(|s| s.gradient(&x)[0]), gradients, "{x:?}");
+        }
+    }
+
+    #[test]
+    fn a_bad_level_set_is_not_hidden_by_its_partners() {
+        let bad = Shape::level_set(std::sync::Arc::new(|_: &[f64; 1]| f64::NAN));
+        let good = Shape::ball([0.0], 1.0).unwrap();
+        for parts in [vec![bad.clone(), good.clone()], vec![good.clone(), bad.clone()]] {
+            assert!(Shape::union(parts.clone()).unwrap().level(&[0.0]).is_nan());
+            assert!(Shape::intersection(parts).unwrap().level(&[0.0]).is_nan());
+        }
+        assert!(bad.project(&[0.0], 1.0).is_err());
+    }
+}

@@ -191,3 +191,41 @@ impl<const D: usize> fmt::Debug for Shape<D> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contradictions_are_refused() {
+        assert!(Shape::cuboid([0.0, 0.0], [1.0, 0.0]).is_err());
+        assert!(Shape::cuboid([0.0, f64::NAN], [1.0, 1.0]).is_err());
+        assert!(Shape::ball([0.0], 0.0).is_err());
+        assert!(Shape::ball([f64::INFINITY], 1.0).is_err());
+        assert!(Shape::half_space([0.0; 2], [0.0; 2]).is_err());
+        assert!(Shape::cylinder([0.0; 2], [1.0; 2], 1.0, None).is_err());
+        assert!(Shape::cylinder([0.0; 3], [0.0; 3], 1.0, None).is_err());
+        assert!(Shape::cylinder([0.0; 3], [1.0; 3], 1.0, Some(-1.0)).is_err());
+        assert!(Shape::polygon(vec![[0.0; 3], [1.0; 3], [2.0; 3]]).is_err());
+        assert!(Shape::<2>::union(vec![]).is_err());
+    }
+
+    #[test]
+    fn bounds_hold_the_shape_and_no_more() {
+        let tilted = Shape::cylinder([1.0, 0.0, 0.0], [1.0, 1.0, 0.0], 1.0, Some(2.0)).unwrap();
+        let b = tilted.bounds().unwrap();
+        // Half an edge of the axis' square plus the disc seen from the side.
+        let half = 2.0 * 0.5_f64.sqrt();
+        for (value, expected) in [(b.max[0], 1.0 + half), (b.min[1], -half), (b.max[2], 1.0)] {
+            assert!((value - expected).abs() < 1e-15);
+        }
+        let ball = Shape::ball([0.0, 0.0], 1.0).unwrap();
+        let plane = Shape::half_space([0.0, 0.0], [1.0, 0.0]).unwrap();
+        let both = Shape::intersection(vec![plane.clone(), ball.clone()]).unwrap();
+        assert_eq!(both.bounds(), ball.bounds());
+        assert_eq!(Shape::union(vec![plane, ball.clone()]).unwrap().bounds(), None);
+        let cut = ball.clone().difference(Shape::ball([0.5, 0.0], 0.1).unwrap());
+        assert_eq!(cut.bounds(), ball.bounds());
+        assert_eq!(cut.leaves().iter().map(|(_, subtracted)| *subtracted).collect::<Vec<_>>(), [false, true]);
+    }
+}

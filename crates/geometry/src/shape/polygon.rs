@@ -129,3 +129,52 @@ fn edges_meet(v: &[[f64; 2]], i: usize, j: usize) -> bool {
         || (s3 == 0.0 && within(c, d, a))
         || (s4 == 0.0 && within(c, d, b))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn l_shape() -> Vec<[f64; 2]> {
+        vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]
+    }
+
+    #[test]
+    fn distances_of_an_l() {
+        let polygon = Polygon::new(l_shape()).unwrap();
+        assert_eq!(polygon.area(), 3.0);
+        let level = |x: f64, y: f64| polygon.nearest(&[x, y]).distance;
+        assert_eq!(level(0.5, 0.5), -0.5);
+        // Across the corner that points inwards.
+        assert!((level(0.7, 0.6) + 0.5).abs() < 1e-15);
+        assert_eq!(level(1.5, 1.5), 0.5);
+        assert_eq!(level(3.0, -1.0), 2.0_f64.sqrt());
+        assert_eq!(level(1.0, 1.0), 0.0);
+        // A ray through vertices.
+        assert_eq!(level(0.5, 1.0), -0.5);
+        assert_eq!(level(-0.5, 1.0), 0.5);
+    }
+
+    #[test]
+    fn the_orientation_does_not_matter() {
+        let mut reversed = l_shape();
+        reversed.reverse();
+        let (a, b) = (Polygon::new(l_shape()).unwrap(), Polygon::new(reversed).unwrap());
+        assert_eq!(b.area(), 3.0);
+        for x in [[0.3, 0.4], [1.7, 1.2], [-1.0, 0.5]] {
+            assert_eq!(a.nearest(&x).distance, b.nearest(&x).distance);
+            assert_eq!(a.nearest(&x).edge_normal, b.nearest(&x).edge_normal);
+        }
+    }
+
+    #[test]
+    fn polygons_that_are_not_simple_are_refused() {
+        let refused = |v: Vec<[f64; 2]>| Polygon::new(v).is_err();
+        assert!(refused(vec![[0.0, 0.0], [1.0, 0.0]]));
+        assert!(refused(vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), "crossing");
+        assert!(refused(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), "coinciding");
+        assert!(refused(vec![[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), "folded");
+        assert!(refused(vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]]), "touching");
+        assert!(refused(vec![[0.0, 0.0], [f64::NAN, 0.0], [1.0, 1.0]]));
+        assert!(!refused(vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 1.0]]), "straight angles are fine");
+    }
+}
