@@ -64,6 +64,53 @@ fn every_section_is_read() {
     assert_eq!(scene.output, OutputSpec { vtu: true, plot: false });
 }
 
+/// A scene with a comment at every line, as the format's description has it.
+#[test]
+fn the_documented_scene_is_read() {
+    let scene = parse(
+        r#"
+title = "Circular inclusion"
+dimension = 2                       # 1, 2 or 3
+[domain]                            # a shape or a level set (negative inside)
+box = { min = [0.0, 0.0], max = [2.0, 2.0] }      # faces: left right bottom top back front
+[points]
+spacing = 0.05                      # a number, or an expression of position for graded clouds
+layout = "irregular"                # "grid" | "jittered" | "irregular"
+seed = 1
+[[regions]]                         # first match wins; the last one, without geometry, is the background
+name = "inclusion"
+level_set = "(x - 1)^2 + (y - 1)^2 - 0.25"
+diffusivity = "(x - 1)^2 + (y - 1)^2 + 1"
+source = "-(8*((x - 1)^2 + (y - 1)^2) + 4)"
+exact = "(x - 1)^2 + (y - 1)^2"     # optional: errors are then reported
+[[regions]]
+name = "matrix"
+diffusivity = "100"
+source = "-(8*((x - 1)^2 + (y - 1)^2) + 4)"
+[[interfaces]]                      # only where something jumps besides eta
+between = ["inclusion", "matrix"]
+flux_jump = "0.2"
+[[boundaries]]
+face = "left"                       # a face, a hole's name, or "all"
+flux = "1.0"
+[method]                            # optional: overrides what the plan would choose
+name = "auto"
+order = 4
+solver = "auto"
+[[probes]]                          # optional: values to report
+at = [1.0, 1.2]
+[output]                            # optional
+vtu = true                          # fields for ParaView
+plot = true                         # a picture of the solution
+"#,
+    );
+    let source = scene.regions[0].source.as_ref().expect("a source");
+    assert_eq!(source.expr.eval(&[2.0, 0.0]), -20.0);
+    assert!(matches!(&scene.boundaries[0].condition, ConditionSpec::Flux(f) if f.as_constant() == Some(1.0)));
+    assert_eq!(scene.method.order, Some(4));
+    assert_eq!(scene.output, OutputSpec { vtu: true, plot: true });
+}
+
 #[test]
 fn sections_that_are_optional_have_defaults() {
     let scene = with_shape(1, "box = { min = [0], max = [1] }", "box = { min = [0], max = [0.5] }");

@@ -89,7 +89,7 @@ fn points_and_holes() {
 }
 
 #[test]
-fn regions_and_interfaces() {
+fn regions() {
     check_all(
         PLATE,
         &[
@@ -143,6 +143,15 @@ fn regions_and_interfaces() {
                 "only the last region",
                 "",
             ),
+        ],
+    );
+}
+
+#[test]
+fn expressions() {
+    check_all(
+        PLATE,
+        &[
             wrong(
                 "\"1 + x^2\"",
                 "\"1 + «sprt»(x)\"",
@@ -155,6 +164,15 @@ fn regions_and_interfaces() {
             wrong("\"-8*x\"", "'''\n-8«x»'''", "regions[0].source", "expected an operator", "`*`"),
             wrong("\"-8*x\"", "«\"-8\\u002ay*q\"»", "regions[0].source", "unknown name `q`", ""),
             wrong("\"x^2\"", "«[\"x^2\"]»", "regions[0].exact", "found an array", ""),
+        ],
+    );
+}
+
+#[test]
+fn interfaces() {
+    check_all(
+        PLATE,
+        &[
             wrong(
                 "[\"inclusion\", \"matrix\"]",
                 "[\"inclusion\", «\"matrx\"»]",

@@ -41,6 +41,16 @@ fn domains() {
                 "unknown key",
                 "min, max",
             ),
+        ],
+    );
+}
+
+#[test]
+fn domains_of_other_shapes() {
+    let domain = "box = { min = [0.0, 0.0], max = [2.0, 1] }";
+    check_all(
+        PLATE,
+        &[
             wrong(
                 "[domain]\nbox = { min = [0.0, 0.0], max = [2.0, 1] }",
                 "«[domain]»\nlevel_set = \"x\"",
@@ -76,7 +86,7 @@ fn domains() {
 }
 
 #[test]
-fn other_shapes() {
+fn primitives() {
     let hole = "sphere = { center = [1.5, 0.5], radius = 0.1 }";
     check_all(
         PLATE,
@@ -125,6 +135,16 @@ fn other_shapes() {
                 "dimension = 3",
                 "sphere",
             ),
+        ],
+    );
+}
+
+#[test]
+fn combinations() {
+    let hole = "sphere = { center = [1.5, 0.5], radius = 0.1 }";
+    check_all(
+        PLATE,
+        &[
             wrong(
                 hole,
                 "union = «[{ level_set = \"x\" }]»",
@@ -156,6 +176,10 @@ fn other_shapes() {
             ),
         ],
     );
+}
+
+#[test]
+fn three_dimensions() {
     check_all(
         BALL,
         &[
