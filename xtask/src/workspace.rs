@@ -6,7 +6,12 @@ use std::path::{Path, PathBuf};
 
 /// The folder of the root manifest.
 pub(crate) fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").components().collect::<PathBuf>().canonicalize().unwrap_or_default()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .components()
+        .collect::<PathBuf>()
+        .canonicalize()
+        .unwrap_or_default()
 }
 
 /// All files below `folder` with one of the extensions, sorted; hidden folders and `target` are left out.

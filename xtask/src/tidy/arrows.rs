@@ -28,7 +28,13 @@ enum May {
 const ARROWS: &[(&str, May)] = &[
     (
         "meshless-interfaces",
-        May::Only(&["meshless-cells", "meshless-geometry", "meshless-neighbors", "meshless-sparse", "meshless-stencils"]),
+        May::Only(&[
+            "meshless-cells",
+            "meshless-geometry",
+            "meshless-neighbors",
+            "meshless-sparse",
+            "meshless-stencils",
+        ]),
     ),
     ("meshless", May::LeavesAnd(&["meshless-interfaces"])),
     ("meshless-cli", May::Only(&["meshless"])),
@@ -58,7 +64,9 @@ fn wrong_arrows(of: &Manifest, all: &[Manifest]) -> Vec<String> {
     let name = of.name.as_str();
     let may = ARROWS.iter().find(|(n, _)| *n == name).map(|(_, may)| may);
     if may.is_none() && !LEAVES.contains(&name) {
-        return vec![format!("{name} is not in the table of xtask/src/tidy/arrows.rs: add it with what it may depend on")];
+        return vec![format!(
+            "{name} is not in the table of xtask/src/tidy/arrows.rs: add it with what it may depend on"
+        )];
     }
     let allowed = |target: &str| match may {
         None => false,
@@ -91,12 +99,18 @@ mod tests {
     use std::path::Path;
 
     fn package(name: &str, dependencies: &str) -> Manifest {
-        Manifest::parse(Path::new(name), &format!("[package]\nname = \"{name}\"\n[dependencies]\n{dependencies}"))
+        Manifest::parse(
+            Path::new(name),
+            &format!("[package]\nname = \"{name}\"\n[dependencies]\n{dependencies}"),
+        )
     }
 
     #[test]
     fn leaves_know_nothing_of_each_other() {
-        let all = [package("meshless-sparse", "meshless-cells.workspace = true\nfaer = \"0\"\n"), package("meshless-cells", "")];
+        let all = [
+            package("meshless-sparse", "meshless-cells.workspace = true\nfaer = \"0\"\n"),
+            package("meshless-cells", ""),
+        ];
         assert_eq!(wrong_arrows(&all[0], &all), ["meshless-sparse must not depend on meshless-cells"]);
         assert!(wrong_arrows(&all[1], &all).is_empty());
     }

@@ -48,7 +48,9 @@ impl Manifest {
             let (key, value) = (key.trim(), value.trim());
             match (section, key) {
                 ("package", "name") => manifest.name = value.trim_matches('"').to_owned(),
-                ("lints", "workspace") | ("", "lints.workspace") => manifest.workspace_lints = value == "true",
+                ("lints", "workspace") | ("", "lints.workspace") => {
+                    manifest.workspace_lints = value == "true";
+                }
                 _ => manifest.note_dependency(section, key.split('.').next().unwrap_or(key)),
             }
         }
@@ -59,7 +61,8 @@ impl Manifest {
     fn note_dependency(&mut self, table: &str, name: &str) {
         let kind = table.rsplit('.').next().unwrap_or(table);
         if matches!(kind, "dependencies" | "build-dependencies" | "dev-dependencies") {
-            self.dependencies.push(Dependency { name: name.trim_matches('"').to_owned(), dev: kind.starts_with("dev") });
+            self.dependencies
+                .push(Dependency { name: name.trim_matches('"').to_owned(), dev: kind.starts_with("dev") });
         }
     }
 }
@@ -105,7 +108,10 @@ mod tests {
 
     #[test]
     fn a_manifest_without_lints_is_recognised() {
-        assert!(!Manifest::parse(Path::new("a"), "[package]\nname = \"a\"\n[lints]\nworkspace = false\n").workspace_lints);
+        assert!(
+            !Manifest::parse(Path::new("a"), "[package]\nname = \"a\"\n[lints]\nworkspace = false\n")
+                .workspace_lints
+        );
         assert!(!Manifest::parse(Path::new("a"), "[package]\nname = \"a\"\n").workspace_lints);
     }
 }

@@ -30,7 +30,8 @@ fn sources(root: &Path) -> io::Result<Vec<(PathBuf, String)>> {
 pub(super) fn lengths(root: &Path) -> io::Result<Vec<String>> {
     let long = |(path, text): &(PathBuf, String)| {
         let lines = text.lines().count();
-        (lines > MAX_LINES).then(|| format!("{} has {lines} lines, the limit is {MAX_LINES}", shown(root, path)))
+        (lines > MAX_LINES)
+            .then(|| format!("{} has {lines} lines, the limit is {MAX_LINES}", shown(root, path)))
     };
     Ok(sources(root)?.iter().filter_map(long).collect())
 }
@@ -66,7 +67,8 @@ pub(super) fn exceptions_have_reasons(root: &Path) -> io::Result<Vec<String>> {
     let mut wrong = Vec::new();
     for (path, text) in sources(root)? {
         for number in unexplained_exceptions(&text) {
-            wrong.push(format!("{}:{number} an exception from a lint without its reason", shown(root, &path)));
+            wrong
+                .push(format!("{}:{number} an exception from a lint without its reason", shown(root, &path)));
         }
     }
     Ok(wrong)
@@ -80,8 +82,10 @@ fn unexplained_exceptions(text: &str) -> Vec<usize> {
         ["#[allow(", "#![allow(", "#[expect(", "#![expect("].iter().any(|start| code.starts_with(start))
     };
     let explained = |at: usize| {
-        let attribute_end = lines[at..].iter().position(|l| l.trim_end().ends_with(']')).map_or(at, |n| at + n);
-        let with_reason = lines[at..=attribute_end].iter().any(|l| l.contains("reason =") || l.contains("//"));
+        let attribute_end =
+            lines[at..].iter().position(|l| l.trim_end().ends_with(']')).map_or(at, |n| at + n);
+        let with_reason =
+            lines[at..=attribute_end].iter().any(|l| l.contains("reason =") || l.contains("//"));
         let comment_above = at > 0 && {
             let above = lines[at - 1].trim_start();
             above.starts_with("//") && !above.starts_with("///") && !above.starts_with("//!")

@@ -1,4 +1,101 @@
-//! Not built yet.
-pub(crate) fn run(_arguments: &[String]) -> std::process::ExitCode {
-    std::process::ExitCode::FAILURE
+//! `cargo xtask verify`: runs the benchmarks, checks every claim about them, and shows what accuracy costs.
+
+mod claims;
+mod cost;
+mod csv;
+mod figure;
+mod gfdm;
+mod hard;
+mod html;
+mod options;
+mod order;
+mod row;
+mod runner;
+mod study;
+mod suite;
+mod variant;
+
+use std::fs;
+use std::io;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use claims::{Claim, Verdict};
+use options::Options;
+use study::Study;
+
+pub(crate) fn run(arguments: &[String]) -> ExitCode {
+    let options = match Options::parse(arguments) {
+        Ok(options) => options,
+        Err(message) => {
+            eprintln!("error: {message}");
+            return ExitCode::from(crate::USAGE_ERROR);
+        }
+    };
+    // Before hours of work: can the results be written at all?
+    if let Err(error) = fs::create_dir_all(&options.out) {
+        eprintln!("error: cannot create {}: {error}", options.out.display());
+        return ExitCode::from(crate::USAGE_ERROR);
+    }
+    if let Some(threads) = options.threads
+        && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()
+    {
+        eprintln!("error: cannot start {threads} threads: {error}");
+        return ExitCode::FAILURE;
+    }
+    let start = Instant::now();
+    let studies: Vec<Study> = options.suites.iter().map(|suite| suite.run(&options)).collect();
+    runner::progress("");
+    let claims: Vec<&Claim> = studies.iter().flat_map(|s| &s.claims).collect();
+    print_table(&claims);
+    match write(&options, &studies) {
+        Ok(()) => println!("\nreport: {}", options.out.join("report.html").display()),
+        Err(error) => {
+            eprintln!("error: cannot write to {}: {error}", options.out.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    let runs: usize = studies.iter().map(|s| s.outcomes.len()).sum();
+    println!(
+        "{runs} runs in {:.1} s on {} threads",
+        start.elapsed().as_secs_f64(),
+        rayon::current_num_threads()
+    );
+    let failed = claims.iter().filter(|c| c.verdict == Verdict::Fails).count();
+    if failed == 0 {
+        ExitCode::SUCCESS
+    } else {
+        eprintln!("{failed} of {} claims do not hold", claims.len());
+        ExitCode::FAILURE
+    }
+}
+
+fn print_table(claims: &[&Claim]) {
+    let mut case = ("", "");
+    for claim in claims {
+        if case != (claim.suite, claim.case) {
+            case = (claim.suite, claim.case);
+            println!("\n{} / {}", claim.suite, claim.case);
+        }
+        let mark = match claim.verdict {
+            Verdict::Holds => "ok       ",
+            Verdict::Explained(_) => "explained",
+            Verdict::Fails => "FAILS    ",
+        };
+        println!("  {mark} {}: {} (expected {})", claim.claim, claim.measured, claim.expected);
+        if let Verdict::Explained(why) = claim.verdict {
+            println!("            {why}");
+        }
+    }
+}
+
+fn write(options: &Options, studies: &[Study]) -> io::Result<()> {
+    let file = |name: &str, text: &str| fs::write(options.out.join(name), text);
+    file("results.csv", &row::file(studies.iter().flat_map(|s| &s.outcomes).map(|o| &o.row)))?;
+    file("claims.csv", &claims::file(studies.iter().flat_map(|s| &s.claims)))?;
+    let page = html::page(studies).map_err(io::Error::other)?;
+    for (name, svg) in &page.pictures {
+        file(&format!("{name}.svg"), svg)?;
+    }
+    file("report.html", &page.html)
 }

@@ -1,0 +1,59 @@
+//! Section 3.3: the interior interface.
+
+use super::cases::case;
+use super::checks::overshoot;
+use super::sweep::{BEYOND, CLAIMED};
+use super::view::{View, largest};
+use super::{CONSERVATIVE, HYBRID, POSITIVE, Variant};
+use crate::verify::claims::Claims;
+use crate::verify::runner::Runner;
+
+/// Error above which a method has failed.
+const FAILED: f64 = 0.3;
+
+pub(super) fn check(runner: &Runner<'_>, claims: &mut Claims) {
+    let view = View::new(runner, "interior");
+    let level = view.common_level();
+    for variant in case("interior").variants().into_iter().filter(|v| v.method == "gfdm-classical") {
+        for jump in [1e4, 1e10] {
+            let claim = format!("{} fails: error, jump {jump:e}", variant.label());
+            claims.at_least("interior", claim, view.error(variant, jump, level), FAILED);
+        }
+    }
+    let negative = |variant| {
+        largest(
+            view.of(variant)
+                .filter(|o| o.key.jump >= 1e4)
+                .filter_map(|o| overshoot("interior").map(|f| f(o))),
+        )
+    };
+    claims.at_least(
+        "interior",
+        "strong form without smoothing gives negative values",
+        negative(Variant::strong(0, true)),
+        1e-3,
+    );
+    for jump in [1e4, 1e10] {
+        let claim = format!(
+            "positivity-preserving hybrid violates the flux condition and does not converge: order, jump {jump:e}"
+        );
+        claims.at_most("interior", claim, view.order(POSITIVE, jump), 0.5);
+        let worse = view.ratio((POSITIVE, jump), (HYBRID, jump), level);
+        let claim =
+            format!("conservative rows at the neighbours are needed: error without over with, jump {jump:e}");
+        claims.at_least("interior", claim, worse, 10.0);
+    }
+    for jump in [1e2, 1e4, 1e10, BEYOND] {
+        let claim = format!("conservative hybrid, jump {jump:e}, h = 0.025");
+        claims.at_most("interior", claim, view.error(HYBRID, jump, CLAIMED), 7e-4);
+    }
+    let lost = view.ratio((CONSERVATIVE, 1e10), (CONSERVATIVE, 1e8), CLAIMED);
+    claims.at_most(
+        "interior",
+        "conservative method loses no digits to round-off (ours): error at 1e10 over that at 1e8, h = 0.025",
+        lost,
+        1.1,
+    );
+    let lost = view.ratio((CONSERVATIVE, BEYOND), (CONSERVATIVE, 1e8), CLAIMED);
+    claims.at_most("interior", "nor at 1e12", lost, 1.1);
+}

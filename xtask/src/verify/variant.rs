@@ -1,0 +1,113 @@
+//! A method with its parameters, as the `[method]` table of a scene.
+
+/// A method with its parameters; `None` leaves the method's own choice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Variant {
+    pub(crate) method: &'static str,
+    pub(crate) smoothing: Option<usize>,
+    pub(crate) log_scaling: Option<bool>,
+    pub(crate) conservative_neumann: Option<bool>,
+    pub(crate) selection_tolerance: Option<f64>,
+    pub(crate) solver: Option<&'static str>,
+    /// Radius of interaction in units of the spacing.
+    pub(crate) support: Option<f64>,
+}
+
+impl Variant {
+    /// A method as it chooses its parameters itself, on the radius of interaction of the benchmarks.
+    pub(crate) const fn plain(method: &'static str) -> Self {
+        Self {
+            method,
+            smoothing: None,
+            log_scaling: None,
+            conservative_neumann: None,
+            selection_tolerance: None,
+            solver: None,
+            support: Some(meshless_tests::kraus::SUPPORT),
+        }
+    }
+
+    /// The strong form with so many smoothing cycles, on eta or on log eta.
+    pub(crate) const fn strong(smoothing: usize, log_scaling: bool) -> Self {
+        Self { smoothing: Some(smoothing), log_scaling: Some(log_scaling), ..Self::plain("gfdm-classical") }
+    }
+
+    /// The same with boundary conditions by stencils rather than by balances.
+    pub(crate) const fn with_strong_neumann(self) -> Self {
+        Self { conservative_neumann: Some(false), ..self }
+    }
+
+    /// The table of the scene.
+    pub(crate) fn table(&self) -> String {
+        let mut table = format!("\n[method]\nname = \"{}\"\n", self.method);
+        let mut push = |key: &str, value: Option<String>| {
+            if let Some(value) = value {
+                table += &format!("{key} = {value}\n");
+            }
+        };
+        push("smoothing", self.smoothing.map(|k| k.to_string()));
+        push("log_scaling", self.log_scaling.map(|b| b.to_string()));
+        push("conservative_neumann", self.conservative_neumann.map(|b| b.to_string()));
+        push("selection_tolerance", self.selection_tolerance.map(|t| format!("{t:?}")));
+        push("solver", self.solver.map(|s| format!("\"{s}\"")));
+        push("support", self.support.map(|s| format!("{s:?}")));
+        table
+    }
+
+    /// Parameters for the column `params`.
+    pub(crate) fn params(&self) -> Vec<String> {
+        let mut params = Vec::new();
+        let mut push = |text: Option<String>| params.extend(text);
+        push(self.smoothing.map(|k| format!("smoothing={k}")));
+        push(self.log_scaling.map(|b| format!("log={b}")));
+        push(
+            self.conservative_neumann
+                .map(|b| format!("neumann={}", if b { "conservative" } else { "strong" })),
+        );
+        push(self.selection_tolerance.map(|t| format!("tolerance={t:e}")));
+        push(self.solver.map(|s| format!("solver={s}")));
+        params
+    }
+
+    /// How diagrams call it.
+    pub(crate) fn label(&self) -> String {
+        let mut label = match self.method {
+            "gfdm-classical" => "strong form".to_owned(),
+            "gfdm-positive" => "positivity-preserving hybrid".to_owned(),
+            "gfdm-hybrid" => "conservative hybrid".to_owned(),
+            "gfdm-conservative" => "conservative".to_owned(),
+            other => other.to_owned(),
+        };
+        if self.log_scaling == Some(true) {
+            label += ", log";
+        }
+        if let Some(k) = self.smoothing {
+            label += &format!(", {k} cycle{}", if k == 1 { "" } else { "s" });
+        }
+        if self.conservative_neumann == Some(false) {
+            label += ", strong Neumann";
+        }
+        label
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Variant;
+    use meshless::scene::Scene;
+
+    #[test]
+    fn every_variant_is_a_scene_that_parses() {
+        let problem = meshless_tests::kraus::interior(1e4, 0.2, 1);
+        let every = Variant {
+            selection_tolerance: Some(1e-8),
+            conservative_neumann: Some(true),
+            solver: Some("bicgstab"),
+            ..Variant::plain("gfdm-hybrid")
+        };
+        for variant in [Variant::strong(2, true), Variant::plain("auto"), every] {
+            let parsed = Scene::parse(&(problem.clone() + &variant.table()), "test");
+            assert!(parsed.is_ok(), "{parsed:?}");
+        }
+    }
+}
