@@ -128,6 +128,18 @@ impl<const D: usize> SpatialHash<D> {
         best.map(|id| (id, distance(x, &self.points[id as usize])))
     }
 
+    /// Appends the nodes nearer to `x` than `reach`. A node can appear more than once.
+    pub(crate) fn collect(&self, x: &[f64; D], reach: f64, found: &mut Vec<[f64; D]>) {
+        for level in &self.levels {
+            self.any_near(level, x, reach, |id, d2| {
+                if d2 < reach * reach {
+                    found.push(self.points[id as usize]);
+                }
+                false
+            });
+        }
+    }
+
     #[inline]
     fn any_in_slot(&self, first: u32, x: &[f64; D], test: &mut impl FnMut(u32, f64) -> bool) -> bool {
         let mut id = first;

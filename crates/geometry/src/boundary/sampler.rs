@@ -2,8 +2,9 @@ use super::manifold::onto;
 use super::patch::{Patch, independent};
 use crate::cells::{Cell, for_each_cell};
 use crate::cloud::{Spacing, Touch, too_many};
-use crate::domain::Domain;
+use crate::domain::{Domain, FaceId};
 use crate::error::GeometryError;
+use crate::shape::Shape;
 use crate::spatial_hash::SpatialHash;
 use crate::vector::{axpy, scale};
 
@@ -21,6 +22,8 @@ pub(crate) struct Sampler<'a, const D: usize> {
     pub(crate) domain: &'a Domain<D>,
     pub(crate) spacing: &'a Spacing<D>,
     pub(crate) patches: Vec<Patch<'a, D>>,
+    /// The domain's curved faces.
+    pub(crate) curved: Vec<(FaceId, &'a Shape<D>, bool)>,
     pub(crate) nodes: SpatialHash<D>,
     /// Touches of the boundary nodes.
     pub(crate) touches: Vec<Vec<Touch<D>>>,
@@ -41,6 +44,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
             domain,
             spacing,
             patches: super::patches(domain),
+            curved: domain.curved_faces(),
             nodes: SpatialHash::new(),
             touches: Vec::new(),
             tolerance: ON_PATCH * domain.bounds().diameter(),

