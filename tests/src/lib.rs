@@ -1,1 +1,10 @@
 //! Gallery of problems with known solutions, and the tests of the whole product.
+//!
+//! A problem is a scene: text that a user could have written, with parameters filled in. Every problem is in a file of
+//! its own and says where it is from.
+
+pub mod kraus;
+pub mod order;
+pub mod small;
+pub mod smooth;
+pub mod solve;

@@ -1,1 +1,44 @@
-//! Local least-squares stencils for derivatives on scattered points
+//! Local least-squares stencils for derivatives on scattered points, in one, two and three dimensions.
+//!
+//! A [`LocalFit`] factors the moment matrix of a support once and gives the coefficients of any operator on it:
+//! value, partial derivatives, Laplacian, `div(eta grad)`, directional derivative ([`Functional`]). Coefficients are
+//! exact for polynomials to a chosen degree and of least weighted norm (Kraus et al. 2022, (10)), which is the same as
+//! to apply the operator to a weighted least-squares polynomial. Where the plain factorisation is not safe a
+//! rank-revealing one takes its place; an operator that the support does not determine is an error with its figures.
+//!
+//! **Not for** finding supports (see `meshless-neighbors`), and not for interpolation of large data sets.
+//!
+//! # Example
+//!
+//! ```
+//! use meshless_stencils::{FitParams, Functional, LocalFit, Weight};
+//!
+//! // Nine points of a lattice; the Laplacian of x^2 + 3 y^2 is 8.
+//! let offsets: Vec<[f64; 2]> =
+//!     (0..9).map(|i| [0.1 * f64::from(i % 3 - 1), 0.1 * f64::from(i / 3 - 1)]).collect();
+//! let weights: Vec<f64> =
+//!     offsets.iter().map(|[x, y]| Weight::Exponential.value(x.hypot(*y), 0.2, 0.2)).collect();
+//! let fit = LocalFit::<2>::new(FitParams::default());
+//! let mut scratch = fit.scratch(9);
+//! fit.factor(&offsets, &weights, 0.2, &mut scratch)?;
+//! let mut laplacian = [0.0; 9];
+//! fit.coefficients(&Functional::Laplacian, &mut scratch, &mut laplacian)?;
+//! let value: f64 = laplacian.iter().zip(&offsets).map(|(c, [x, y])| c * (x * x + 3.0 * y * y)).sum();
+//! assert!((value - 8.0).abs() < 1e-10);
+//! # Ok::<(), meshless_stencils::StencilError>(())
+//! ```
+
+mod diagnosis;
+mod error;
+mod fit;
+mod functional;
+mod monomials;
+mod qr;
+mod weight;
+
+pub use diagnosis::{StencilDiagnosis, diagnose};
+pub use error::StencilError;
+pub use fit::{FitDiagnosis, FitParams, FitScratch, LocalFit, REPRODUCTION_TOLERANCE};
+pub use functional::Functional;
+pub use monomials::Monomials;
+pub use weight::Weight;

@@ -1,0 +1,59 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+/// Solves elliptic interface problems on point clouds.
+#[derive(Debug, Parser)]
+#[command(name = "meshless", version, arg_required_else_help = true)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Solve a scene.
+    Solve(SolveArgs),
+    /// Show what a scene calls for and how it would be solved, without solving it.
+    Plan(PlanArgs),
+    /// List the methods, their orders, dimensions and limits.
+    Methods,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct SolveArgs {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Folder for output files; made if it does not exist.
+    #[arg(long, default_value = "meshless-out")]
+    pub(crate) out: PathBuf,
+    /// Print one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Method to use instead of the scene's.
+    #[arg(long)]
+    pub(crate) method: Option<String>,
+    /// Order to use instead of the scene's.
+    #[arg(long)]
+    pub(crate) order: Option<usize>,
+    /// Spacing to use instead of the scene's: a number, or an expression of position.
+    #[arg(long)]
+    pub(crate) spacing: Option<String>,
+    /// Relative L2 error to reach (not supported yet).
+    #[arg(long)]
+    pub(crate) tolerance: Option<f64>,
+    /// Threads to use; all cores by default. Results do not depend on it.
+    #[arg(long)]
+    pub(crate) threads: Option<usize>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct PlanArgs {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Print one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,13 @@
+//! `meshless methods`.
+
+use meshless::METHODS;
+
+use crate::Failure;
+
+pub(crate) fn run() -> Result<(), Failure> {
+    println!("{:<24} {:<6} {:<10} limits", "method", "order", "dimensions");
+    for method in METHODS {
+        println!("{:<24} {:<6} {:<10} {}", method.name, method.order, method.dimensions, method.limits);
+    }
+    Ok(())
+}

@@ -1,0 +1,61 @@
+//! `meshless plan`.
+
+use meshless::plan::Plan;
+use meshless::scene::Scene;
+use serde::Serialize;
+
+use crate::Failure;
+use crate::args::PlanArgs;
+
+/// A plan as JSON.
+#[derive(Serialize)]
+struct PlanJson<'a> {
+    title: &'a str,
+    dimension: usize,
+    effects: Vec<&'static str>,
+    method: &'static str,
+    why: &'a str,
+    solver: String,
+    stages: Vec<&'static str>,
+    skipped: Vec<SkippedJson>,
+    predicted: PredictedJson,
+}
+
+#[derive(Serialize)]
+struct SkippedJson {
+    what: &'static str,
+    why: &'static str,
+}
+
+#[derive(Serialize)]
+struct PredictedJson {
+    unknowns: f64,
+    seconds: f64,
+    memory_mb: f64,
+}
+
+pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
+    let scene = Scene::read(&args.scene).map_err(meshless::Error::from)?;
+    let plan = Plan::new(&scene)?;
+    if !args.json {
+        println!("{}\n{plan}", scene.title);
+        return Ok(());
+    }
+    let json = PlanJson {
+        title: &scene.title,
+        dimension: plan.dimension,
+        effects: plan.effects.iter().map(|e| e.name()).collect(),
+        method: plan.method.name.as_str(),
+        why: &plan.method.why,
+        solver: plan.solver.name(),
+        stages: plan.stages.iter().map(|s| s.name()).collect(),
+        skipped: plan.skipped.iter().map(|s| SkippedJson { what: s.what, why: s.why }).collect(),
+        predicted: PredictedJson {
+            unknowns: plan.predicted.unknowns,
+            seconds: plan.predicted.seconds,
+            memory_mb: plan.predicted.memory_mb,
+        },
+    };
+    println!("{}", serde_json::to_string(&json).map_err(|e| Failure::failed(e.to_string()))?);
+    Ok(())
+}

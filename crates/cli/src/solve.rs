@@ -1,0 +1,100 @@
+//! `meshless solve`.
+
+use std::path::Path;
+
+use meshless::plan::Plan;
+use meshless::report::Report;
+use meshless::scene::Scene;
+use meshless::{Overrides, Solution, execute, write_outputs};
+
+use crate::Failure;
+use crate::args::SolveArgs;
+use crate::progress::Bar;
+
+pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
+    if args.tolerance.is_some() {
+        return Err(Failure::input("error: --tolerance is not supported yet; choose --spacing and look at the estimate"));
+    }
+    let scene = read(args)?;
+    let plan = Plan::new(&scene)?;
+    let writes = scene.output.vtu || scene.output.plot;
+    if writes {
+        prepare(&args.out)?;
+    }
+    let solution = on_threads(args.threads, || execute(&scene, &plan, &mut Bar::new(&plan)))??;
+    let stem = args.scene.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy());
+    let files = write_outputs(&plan, &solution, &args.out, &stem)?;
+    if args.json {
+        let json = serde_json::to_string(&solution.report).map_err(|e| Failure::failed(e.to_string()))?;
+        println!("{json}");
+    } else {
+        print(&solution.report, &solution);
+        files.iter().for_each(|file| println!("wrote       {}", file.display()));
+    }
+    Ok(())
+}
+
+fn read(args: &SolveArgs) -> Result<Scene, Failure> {
+    let mut scene = Scene::read(&args.scene).map_err(meshless::Error::from)?;
+    let overrides =
+        Overrides { method: args.method.as_deref(), order: args.order, spacing: args.spacing.as_deref() };
+    overrides.apply(&mut scene).map_err(|e| Failure::input(format!("error: {e}")))?;
+    Ok(scene)
+}
+
+/// Makes the output folder and finds out whether it can be written, before anything is computed.
+fn prepare(out: &Path) -> Result<(), Failure> {
+    let refuse = |e: std::io::Error| {
+        Failure::input(format!("error: --out {}: {e}; name a folder that can be written", out.display()))
+    };
+    std::fs::create_dir_all(out).map_err(refuse)?;
+    let probe = out.join(".meshless-write-test");
+    std::fs::write(&probe, b"").map_err(refuse)?;
+    std::fs::remove_file(&probe).map_err(refuse)
+}
+
+fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+    match threads {
+        None => Ok(work()),
+        Some(0) => Err(Failure::input("error: --threads must be at least 1")),
+        Some(n) => meshless::on_threads(n, work).map_err(|e| Failure::failed(format!("error: {e}"))),
+    }
+}
+
+fn print(report: &Report, solution: &Solution) {
+    println!("{}", report.title);
+    println!("method      {} (order {}), {} unknowns, spacing {:.4}", report.method, report.order, report.unknowns, report.spacing);
+    let nodes = &report.nodes;
+    println!(
+        "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",
+        nodes.strong, nodes.conservative, nodes.strong_boundary, nodes.dirichlet
+    );
+    println!("contrast    {:.3e}", report.contrast);
+    println!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
+    let solver = &report.solver;
+    println!("solver      {}, {} iterations, residual {:.1e}", solver.name, solver.iterations, solver.residual);
+    if let Some(errors) = &report.errors {
+        println!("error       l2 {:.3e}, linf {:.3e}, gradient linf {:.3e}", errors.l2, errors.linf, errors.gradient_linf);
+        if errors.regions.len() > 1 {
+            for (name, region) in &errors.regions {
+                println!("  {name:<10} l2 {:.3e}, linf {:.3e}", region.l2, region.linf);
+            }
+        }
+    }
+    match (report.estimate.l2, &report.estimate.why_not) {
+        (Some(l2), _) => println!("estimate    l2 {l2:.3e}"),
+        (None, Some(why)) => println!("estimate    none: {why}"),
+        (None, None) => {}
+    }
+    let s = &report.seconds;
+    println!(
+        "seconds     {:.3}: points {:.3}, neighbors {:.3}, stencils {:.3}, assembly {:.3}, solve {:.3}, post {:.3}, estimate {:.3}",
+        s.total, s.points, s.neighbors, s.stencils, s.assembly, s.solve, s.post, s.estimate
+    );
+    for probe in &solution.report.probes {
+        match probe.value {
+            Some(value) => println!("probe       {:?}: {value:.8e}", probe.at),
+            None => println!("probe       {:?}: outside of the domain", probe.at),
+        }
+    }
+}

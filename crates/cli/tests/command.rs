@@ -1,0 +1,206 @@
+//! The command as a user meets it: what it prints, writes and answers.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const SCENE: &str = r#"title = "Two layers"
+dimension = 1
+
+[domain]
+box = { min = [0.0], max = [1.0] }
+
+[points]
+spacing = 0.05
+layout = "jittered"
+
+[[regions]]
+name = "left"
+level_set = "x - 0.5"
+diffusivity = "1"
+exact = "1 - 2*1000/1001*x"
+
+[[regions]]
+name = "right"
+diffusivity = "1000"
+exact = "2/1001*(1 - x)"
+
+[[boundaries]]
+face = "left"
+dirichlet = "1"
+
+[[boundaries]]
+face = "right"
+dirichlet = "0"
+
+[[probes]]
+at = [0.25]
+
+[output]
+vtu = true
+plot = true
+"#;
+
+fn meshless(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_meshless")).args(args).output().unwrap()
+}
+
+fn scene_in(folder: &Path, text: &str) -> PathBuf {
+    let path = folder.join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Runs a scene that is wrong and returns what is said about it.
+fn refused(text: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), text);
+    let out = folder.path().join("out");
+    let output = meshless(&["solve", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let written = std::fs::read_dir(&out).map(Iterator::count).unwrap_or(0);
+    assert_eq!(written, 0, "output of a scene that was refused");
+    stderr(&output)
+}
+
+#[test]
+fn json_is_one_object_with_the_promised_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    let out = folder.path().join("out");
+    let output = meshless(&["solve", scene.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in [
+        "title", "dimension", "unknowns", "spacing", "method", "order", "contrast", "effects", "skipped", "errors",
+        "estimate", "extrema", "solver", "seconds", "peak_memory_mb", "probes",
+    ] {
+        assert!(json.get(key).is_some(), "{key}");
+    }
+    for key in ["points", "neighbors", "stencils", "assembly", "solve", "total"] {
+        assert!(json["seconds"][key].is_f64(), "{key}");
+    }
+    assert_eq!(json["contrast"], 1000.0);
+    assert!(json["errors"]["regions"]["left"]["l2"].as_f64().unwrap() < 0.05);
+    assert!((json["probes"][0]["value"].as_f64().unwrap() - 0.5).abs() < 0.03);
+    assert!(json["skipped"].as_array().unwrap().contains(&"time".into()));
+    assert!(out.join("scene.vtu").is_file() && out.join("scene.svg").is_file());
+}
+
+#[test]
+fn the_spacing_and_the_method_can_be_overridden() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    let out = folder.path().join("out");
+    let output = meshless(&[
+        "solve", scene.to_str().unwrap(), "--json", "--spacing", "0.01", "--method", "gfdm-conservative", "--out",
+        out.to_str().unwrap(), "--threads", "1",
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["method"], "gfdm-conservative");
+    assert!(json["unknowns"].as_u64().unwrap() > 90);
+}
+
+#[test]
+fn plan_solves_nothing_and_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    let output = meshless(&["plan", scene.to_str().unwrap()]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success());
+    assert!(text.contains("diffusivity jump (1.000e3)"), "{text}");
+    assert!(text.contains("source: the scene has no source"), "{text}");
+    let output = meshless(&["plan", scene.to_str().unwrap(), "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["method"], "gfdm-hybrid");
+}
+
+#[test]
+fn methods_are_listed() {
+    let output = meshless(&["methods"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    for name in ["gfdm-classical", "gfdm-positive", "gfdm-hybrid", "gfdm-conservative"] {
+        assert!(text.contains(name), "{text}");
+    }
+}
+
+#[test]
+fn a_wrong_scene_is_answered_with_file_line_and_key() {
+    // What is replaced, by what, and what the answer must contain.
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("diffusivity = \"1\"\n", "difusivity = \"1\"\n", &["scene.toml:13", "difusivity", "diffusivity"]),
+        ("title = \"Two layers\"\n", "", &["title"]),
+        ("spacing = 0.05", "spacing = \"0.05 +\"", &["scene.toml:8", "points.spacing"]),
+        ("spacing = 0.05", "spacing = 1e-11", &["scene.toml:8", "nodes"]),
+        ("diffusivity = \"1\"\n", "diffusivity = \"-1\"\n", &["scene.toml:13", "diffusivity", "positive"]),
+        ("diffusivity = \"1\"\n", "diffusivity = \"x - 0.3\"\n", &["scene.toml:13", "positive"]),
+        ("diffusivity = \"1\"\n", "diffusivity = \"sqrt(x - 0.3)\"\n", &["scene.toml:13", "positive"]),
+        ("level_set = \"x - 0.5\"", "level_set = \"x + 3\"", &["left", "no node"]),
+        ("face = \"right\"", "face = \"top\"", &["face", "right"]),
+        ("[[boundaries]]\nface = \"right\"\ndirichlet = \"0\"\n", "", &["no boundary condition"]),
+        ("[[probes]]", "[[interfaces]]\nbetween = [\"left\", \"middle\"]\n\n[[probes]]", &["middle"]),
+        ("[output]", "[time]\nend = 1.0\n\n[output]", &["time", "not supported yet"]),
+        ("dirichlet = \"0\"", "dirichlet = \"log(0 - x)\"", &["dirichlet", "NaN"]),
+    ];
+    for (old, new, expected) in cases {
+        let text = SCENE.replacen(old, new, 1);
+        assert_ne!(text, SCENE, "{old}");
+        let said = refused(&text);
+        for part in *expected {
+            assert!(said.contains(part), "{old:?} -> {new:?}: {said}");
+        }
+    }
+}
+
+#[test]
+fn regions_that_never_touch_cannot_share_an_interface() {
+    let text = SCENE
+        .replace("[[regions]]\nname = \"right\"", "[[regions]]\nname = \"middle\"\nlevel_set = \"x - 0.75\"\ndiffusivity = \"2\"\nexact = \"0\"\n\n[[regions]]\nname = \"right\"")
+        + "\n[[interfaces]]\nbetween = [\"left\", \"right\"]\nflux_jump = \"1\"\n";
+    let said = refused(&text);
+    assert!(said.contains("interfaces") && said.contains("touch"), "{said}");
+}
+
+#[test]
+fn pure_neumann_is_solved_up_to_a_constant_or_refused_with_the_imbalance() {
+    let neumann = SCENE
+        .replace("face = \"left\"\ndirichlet = \"1\"", "face = \"left\"\nflux = \"1\"")
+        .replace("face = \"right\"\ndirichlet = \"0\"", "face = \"right\"\nflux = \"-1\"")
+        .replace("exact = \"1 - 2*1000/1001*x\"", "exact = \"0 - x\"")
+        .replace("exact = \"2/1001*(1 - x)\"", "exact = \"0 - 0.5 - (x - 0.5)/1000\"");
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), &neumann);
+    let out = folder.path().join("out");
+    let args = ["solve", scene.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
+    let output = meshless(&args);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["errors"]["l2"].as_f64().unwrap() < 0.1, "{}", json["errors"]);
+
+    scene_in(folder.path(), &neumann.replace("flux = \"-1\"", "flux = \"0.5\""));
+    let output = meshless(&args);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("balance"), "{}", stderr(&output));
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_written_is_refused_before_solving() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    let file = folder.path().join("file");
+    std::fs::write(&file, "in the way").unwrap();
+    let output = meshless(&["solve", scene.to_str().unwrap(), "--out", file.join("out").to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--out"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_wrong_command_line_ends_with_status_2() {
+    for args in [&["solve"][..], &["solve", "no-such-file.toml"], &["frobnicate"], &["solve", "x.toml", "--threads", "no"]] {
+        assert_eq!(meshless(args).status.code(), Some(2), "{args:?}");
+    }
+}

@@ -1,0 +1,79 @@
+//! Errors of the discretisations.
+
+use meshless_cells::CellError;
+use meshless_sparse::SolveError;
+use meshless_stencils::StencilError;
+use thiserror::Error;
+
+/// Why a problem could not be discretised or solved.
+#[derive(Debug, Error)]
+pub enum MethodError {
+    /// A local fit cannot reproduce the operator even on an enlarged support.
+    #[error("no stencil at node {node} (near {position:?}): {source}; use a smaller spacing or a larger support there")]
+    Stencil {
+        /// The node.
+        node: usize,
+        /// Its coordinates.
+        position: Vec<f64>,
+        /// What the fit said.
+        source: StencilError,
+    },
+    /// A Voronoi cell could not be closed.
+    #[error("no Voronoi cell at node {node} (near {position:?}): {source}")]
+    Cell {
+        /// The node.
+        node: usize,
+        /// Its coordinates.
+        position: Vec<f64>,
+        /// What the clipping said.
+        source: CellError,
+    },
+    /// A boundary node or a piece of boundary without a condition.
+    #[error("no boundary condition at node {node} (near {position:?})")]
+    NoCondition {
+        /// The node.
+        node: usize,
+        /// Its coordinates.
+        position: Vec<f64>,
+    },
+    /// A Robin condition `a u + b eta du/dn = g` with `b = 0`.
+    #[error("the Robin condition at node {node} has b = 0 (near {position:?}); prescribe u instead")]
+    RobinWithoutFlux {
+        /// The node.
+        node: usize,
+        /// Its coordinates.
+        position: Vec<f64>,
+    },
+    /// A method was asked for something that it does not do.
+    #[error("{method} cannot {what}; {instead}")]
+    Unsupported {
+        /// The method.
+        method: &'static str,
+        /// What was asked.
+        what: &'static str,
+        /// What to use.
+        instead: &'static str,
+    },
+    /// No condition fixes the constant of u, and sources and fluxes do not balance.
+    #[error(
+        "only fluxes are prescribed on the boundary, so sources and boundary fluxes must balance, but {defect:.2e} of \
+         them is left over; prescribe u somewhere, or correct the source or the fluxes"
+    )]
+    Incompatible {
+        /// The part of sources and fluxes that is left over, relative to their size.
+        defect: f64,
+    },
+    /// The linear system could not be solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+}
+
+impl MethodError {
+    pub(crate) fn stencil<const D: usize>(node: usize, x: &[f64; D], source: StencilError) -> Self {
+        Self::Stencil { node, position: x.to_vec(), source }
+    }
+
+    pub(crate) fn cell<const D: usize>(node: usize, x: &[f64; D], source: CellError) -> Self {
+        Self::Cell { node, position: x.to_vec(), source }
+    }
+}

@@ -1,0 +1,65 @@
+//! Boundary conditions on the flux by collocation: `a u + b eta du/dn = g` at the node.
+
+use meshless_stencils::{Functional, Weight};
+
+use crate::local::{NodeFit, enlarged_support};
+use crate::problem::Condition;
+use crate::{MethodError, Problem};
+
+/// Polynomial degree of the normal derivative.
+const DEGREE: usize = 2;
+
+/// The row of a boundary node: `sum_j c_j (u_j - u_i) + r u_i = g`.
+#[derive(Debug, Clone)]
+pub(super) struct BoundaryRow {
+    pub(super) neighbors: Vec<u32>,
+    pub(super) coefficients: Vec<f64>,
+    pub(super) row_sum: f64,
+    pub(super) rhs: f64,
+}
+
+/// A condition on the flux in the form `a u + eta du/dn = g`.
+///
+/// `eta` turns du/dn into a flux; the caller never passes a Dirichlet condition.
+pub(super) fn as_flux(condition: &Condition, eta: f64) -> Option<(f64, f64)> {
+    match *condition {
+        Condition::Dirichlet(_) => None,
+        Condition::Neumann(g) => Some((0.0, eta * g)),
+        Condition::Flux(g) => Some((0.0, g)),
+        Condition::Robin { a, b, g } => (b != 0.0).then_some((a / b, g / b)),
+    }
+}
+
+/// Collocates the conditions of boundary node `index` (its place in `cloud.boundary()`).
+///
+/// At an edge or a corner the conditions of all faces are added: with normals n_f that is the derivative along
+/// their sum, which every smooth solution satisfies.
+pub(super) fn collocate<const D: usize>(problem: &Problem<'_, D>, index: usize) -> Result<BoundaryRow, MethodError> {
+    let node = &problem.cloud.boundary()[index];
+    let i = node.node as usize;
+    let position = || problem.cloud.points()[i].to_vec();
+    let (mut direction, mut row_sum, mut rhs) = ([0.0; D], 0.0, 0.0);
+    for (touch, condition) in node.touches.iter().zip(&problem.conditions[index]) {
+        let (a, g) = as_flux(condition, problem.eta[i])
+            .ok_or_else(|| MethodError::RobinWithoutFlux { node: i, position: position() })?;
+        row_sum += a;
+        rhs += g;
+        direction.iter_mut().zip(touch.normal).for_each(|(d, n)| *d += n);
+    }
+    let fit = NodeFit::new(DEGREE, Weight::Exponential);
+    let mut neighbors = problem.supports.lists.of(i).to_vec();
+    let mut scratch = fit.scratch(neighbors.len());
+    let factored = fit.factor(problem, i, &neighbors, &mut scratch);
+    let mut coefficients = vec![0.0; neighbors.len()];
+    let functional = Functional::Directional(direction);
+    if factored.and_then(|()| fit.coefficients(&functional, &mut scratch, &mut coefficients)).is_err() {
+        let located = |source| MethodError::stencil(i, &problem.cloud.points()[i], source);
+        neighbors = enlarged_support(problem, i);
+        scratch = fit.scratch(neighbors.len());
+        fit.factor(problem, i, &neighbors, &mut scratch).map_err(located)?;
+        coefficients = vec![0.0; neighbors.len()];
+        fit.coefficients(&functional, &mut scratch, &mut coefficients).map_err(located)?;
+    }
+    coefficients.iter_mut().for_each(|c| *c *= problem.eta[i]);
+    Ok(BoundaryRow { neighbors, coefficients, row_sum, rhs })
+}

@@ -1,0 +1,191 @@
+//! The conservative operator: balance of fluxes over the Voronoi cell of a node (Kraus et al. 2022, section 2.2.2).
+//!
+//! Rows are integrated over the cell, `-sum_j |Gamma_ij| eta_ij (u_j - u_i) / d_ij = |Omega_i| f_i + boundary fluxes`,
+//! and not divided by its volume as in (20): so the part of the matrix that couples two conservative nodes is symmetric.
+
+use meshless_cells::{Cell, CellError, CellFace, CellScratch, Container, Cut, FaceKind, Plane, voronoi_cell};
+use meshless_geometry::FaceId;
+use meshless_neighbors::CellList;
+
+use crate::gfdm::boundary::as_flux;
+use crate::problem::Condition;
+use crate::{MethodError, Problem};
+
+/// How often the search for the neighbours that close a cell is widened.
+const MAX_SEARCHES: usize = 8;
+
+/// Smallest face that counts, relative to the largest of its cell: below it a face is round-off of a degenerate
+/// Voronoi vertex, and its flux would be noise.
+const NEGLIGIBLE_FACE: f64 = 1e-12;
+
+/// The balance of one cell.
+#[derive(Debug, Clone)]
+pub(super) struct CellRow {
+    /// Neighbours and transmissibilities `|Gamma_ij| eta_ij / d_ij`.
+    pub(super) entries: Vec<(u32, f64)>,
+    pub(super) row_sum: f64,
+    pub(super) rhs: f64,
+    pub(super) volume: f64,
+}
+
+/// Builds the cells and their balances.
+pub(super) struct CellBalance<'a, const D: usize> {
+    problem: &'a Problem<'a, D>,
+    planes: Vec<Plane<D>>,
+    levels: Vec<(FaceId, Level<'a, D>)>,
+    index: CellList<'a, D>,
+}
+
+type Level<'a, const D: usize> = Box<dyn Fn(&[f64; D]) -> f64 + Sync + 'a>;
+
+impl<'a, const D: usize> CellBalance<'a, D> {
+    pub(super) fn new(problem: &'a Problem<'a, D>) -> Result<Self, MethodError> {
+        let mut planes = Vec::new();
+        if let Some(bounds) = problem.domain.outer_box() {
+            for axis in 0..D {
+                for (side, offset) in [(-1.0, -bounds.min[axis]), (1.0, bounds.max[axis])] {
+                    let mut normal = [0.0; D];
+                    normal[axis] = side;
+                    planes.push(Plane { normal, offset, face: planes.len() as u16 });
+                }
+            }
+        }
+        let levels = problem
+            .domain
+            .curved_faces()
+            .into_iter()
+            .map(|(face, shape, hole)| {
+                let sign = if hole { -1.0 } else { 1.0 };
+                (face, Box::new(move |x: &[f64; D]| sign * shape.level(x)) as Level<'a, D>)
+            })
+            .collect();
+        let reach = problem.supports.radius.iter().fold(0.0_f64, |a, &b| a.max(b));
+        let index = CellList::new(problem.cloud.points(), reach)?;
+        Ok(Self { problem, planes, levels, index })
+    }
+
+    /// The cell of node i, clipped to the domain.
+    pub(super) fn cell(&self, i: usize, scratch: &mut CellScratch) -> Result<Cell<D>, MethodError> {
+        let points = self.problem.cloud.points();
+        let cuts: Vec<Cut<'_, D>> =
+            self.levels.iter().map(|(face, level)| Cut { level: &**level, face: face.0 }).collect();
+        let bounds = self.problem.domain.bounds();
+        let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts: &cuts };
+        let supports = self.problem.supports;
+        let neighbors = supports.lists.of(i);
+        let mut candidates: Vec<(u32, [f64; D])> = neighbors.iter().map(|&j| (j, points[j as usize])).collect();
+        // Distance d2: j is listed up to (h_i + h_j) / 2, so all nodes within half of h_i + the least h_j are.
+        let least = neighbors.iter().fold(supports.radius[i], |a, &j| a.min(supports.radius[j as usize]));
+        let mut searched = 0.5 * (supports.radius[i] + least);
+        let mut found = Vec::new();
+        for _ in 0..MAX_SEARCHES {
+            match voronoi_cell(&points[i], &candidates, searched, &container, scratch) {
+                Err(CellError::Incomplete { needed }) => {
+                    searched = needed.min(2.0 * searched);
+                    found.clear();
+                    self.index.within(&points[i], searched, &mut found);
+                    candidates.clear();
+                    candidates.extend(found.iter().filter(|&&j| j as usize != i).map(|&j| (j, points[j as usize])));
+                }
+                other => return other.map_err(|e| MethodError::cell(i, &points[i], e)),
+            }
+        }
+        let needed = CellError::Incomplete { needed: 2.0 * searched };
+        Err(MethodError::cell(i, &points[i], needed))
+    }
+
+    /// The balance over the cell of node i.
+    pub(super) fn row(&self, i: usize, scratch: &mut CellScratch) -> Result<CellRow, MethodError> {
+        let cell = self.cell(i, scratch)?;
+        let source = self.problem.source.map_or(0.0, |f| f[i]);
+        let mut row =
+            CellRow { entries: Vec::with_capacity(cell.faces.len()), row_sum: 0.0, rhs: cell.volume * source, volume: cell.volume };
+        let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
+        for face in cell.faces.iter().filter(|f| f.area > negligible) {
+            match face.kind {
+                FaceKind::Neighbor(j) => self.inner_face(i, j, face, &mut row),
+                FaceKind::Boundary(id) => self.boundary_face(i, FaceId(id), face, &mut row)?,
+            }
+        }
+        Ok(row)
+    }
+
+    /// Flux to a neighbour by the harmonic mean of the diffusivities, (20), with prescribed jumps at the middle.
+    ///
+    /// With `q` the flux towards j on the near side of an interface at the middle, `q + b` that on the far side and
+    /// `a` the jump of u, elimination of the values there leaves `q = H/d (u_j - u_i - a) - b eta_i/(eta_i + eta_j)`.
+    fn inner_face(&self, i: usize, j: u32, face: &CellFace<D>, row: &mut CellRow) {
+        let problem = self.problem;
+        let points = problem.cloud.points();
+        let (here, there) = (problem.eta[i], problem.eta[j as usize]);
+        let (from, to) = (points[i], points[j as usize]);
+        let distance = (0..D).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
+        let transmissibility = face.area * harmonic_mean(here, there) / distance;
+        row.entries.push((j, transmissibility));
+        let labels = (problem.labels[i], problem.labels[j as usize]);
+        let Some((jump, sign)) = (labels.0 != labels.1).then(|| problem.jump_between(labels.0, labels.1)).flatten() else {
+            return;
+        };
+        let middle: [f64; D] = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
+        let direction: [f64; D] = std::array::from_fn(|k| (to[k] - from[k]) / distance);
+        let reach = problem.supports.radius[i];
+        // Off the interface by more than the support there is nothing to project on: the middle itself serves.
+        let (foot, normal) = match problem.regions.project(jump.between[0], jump.between[1], &middle, reach) {
+            Ok(projection) => (projection.point, projection.normal),
+            Err(_) => (middle, direction.map(|x| sign * x)),
+        };
+        if let Some(value) = &jump.value {
+            row.rhs -= transmissibility * sign * value.at(&foot);
+        }
+        if let Some(flux) = &jump.flux {
+            // The staircase of cell faces has the area of the interface only as seen along its normal.
+            let seen = (0..D).map(|k| normal[k] * direction[k]).sum::<f64>();
+            row.rhs -= face.area * flux.at(&foot) * seen * here / (here + there);
+        }
+    }
+
+    /// Flux through a piece of the boundary, (21).
+    fn boundary_face(&self, i: usize, id: FaceId, face: &CellFace<D>, row: &mut CellRow) -> Result<(), MethodError> {
+        let problem = self.problem;
+        let position = || problem.cloud.points()[i].to_vec();
+        let condition = problem
+            .boundary
+            .condition(id, &face.centroid)
+            .ok_or_else(|| MethodError::NoCondition { node: i, position: position() })?;
+        if let Condition::Dirichlet(value) = condition {
+            // The cell of a node inside reaches the boundary: the value is prescribed at the foot of its distance.
+            let x = problem.cloud.points()[i];
+            let distance = (0..D).map(|k| face.normal[k] * (face.centroid[k] - x[k])).sum::<f64>().abs();
+            if distance > 0.0 {
+                let transmissibility = face.area * problem.eta[i] / distance;
+                row.row_sum += transmissibility;
+                row.rhs += transmissibility * value;
+            }
+            return Ok(());
+        }
+        let (a, g) = as_flux(&condition, problem.eta[i])
+            .ok_or_else(|| MethodError::RobinWithoutFlux { node: i, position: position() })?;
+        row.row_sum += face.area * a;
+        row.rhs += face.area * g;
+        Ok(())
+    }
+}
+
+/// Harmonic mean, written so that it neither overflows nor loses the smaller of two very different numbers.
+fn harmonic_mean(a: f64, b: f64) -> f64 {
+    let (small, large) = if a < b { (a, b) } else { (b, a) };
+    2.0 * small / (1.0 + small / large)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::harmonic_mean;
+
+    #[test]
+    fn the_harmonic_mean_is_symmetric_and_keeps_to_the_smaller() {
+        assert_eq!(harmonic_mean(3.0, 3.0), 3.0);
+        assert_eq!(harmonic_mean(1e-10, 1e10), harmonic_mean(1e10, 1e-10));
+        assert!((harmonic_mean(1e-10, 1e10) - 2e-10).abs() < 1e-25);
+        assert!((harmonic_mean(2.0, 6.0) - 3.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,176 @@
+//! Generalised finite differences with a conservative fallback.
+//!
+//! H. Kraus, J. Kuhnert, A. Meister, P. Suchde, "A meshfree point collocation method for elliptic interface
+//! problems", 2022. One type serves its four methods; [`GfdmParams`] says which rows are strong and which conservative.
+
+mod boundary;
+mod conservative;
+mod diffusivity;
+mod params;
+mod select;
+mod strong;
+
+use std::time::Instant;
+
+use meshless_cells::CellScratch;
+use meshless_sparse::DifferenceMatrix;
+use rayon::prelude::*;
+
+use crate::method::{Counts, Discretization, Method, RowKind};
+use crate::{MethodError, Problem};
+use boundary::BoundaryRow;
+use conservative::{CellBalance, CellRow};
+pub use params::{GfdmParams, Selection, StrongParams};
+use strong::StrongRows;
+
+/// A generalised finite difference method.
+#[derive(Debug, Clone, Copy)]
+pub struct Gfdm {
+    /// What was chosen.
+    pub params: GfdmParams,
+}
+
+impl<const D: usize> Method<D> for Gfdm {
+    fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
+        self.check(problem)?;
+        Ok(Parts::build(problem, &self.params)?.assemble(problem))
+    }
+}
+
+impl Gfdm {
+    fn check<const D: usize>(&self, problem: &Problem<'_, D>) -> Result<(), MethodError> {
+        if self.params.selection == Selection::None && !problem.jumps.is_empty() {
+            return Err(MethodError::Unsupported {
+                method: "the classical method",
+                what: "prescribe a jump of u or of the flux",
+                instead: "use gfdm-conservative or gfdm-hybrid",
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The rows of a discretisation before they are put together.
+struct Parts {
+    kinds: Vec<RowKind>,
+    known: Vec<Option<f64>>,
+    strong: Option<StrongRows>,
+    boundary: Vec<Option<BoundaryRow>>,
+    cells: Vec<Option<CellRow>>,
+    counts: Counts,
+    stencil_seconds: f64,
+}
+
+impl Parts {
+    fn build<const D: usize>(problem: &Problem<'_, D>, params: &GfdmParams) -> Result<Self, MethodError> {
+        let start = Instant::now();
+        let known = problem.dirichlet();
+        let mut kinds = select::boundary_kinds(problem, &known, params.conservative_neumann);
+        let mut counts = Counts::default();
+        let strong = if params.selection == Selection::All {
+            kinds.iter_mut().filter(|k| **k == RowKind::Strong).for_each(|k| *k = RowKind::Conservative);
+            None
+        } else {
+            let wanted: Vec<bool> = kinds.iter().map(|&k| k == RowKind::Strong).collect();
+            let rows = StrongRows::compute(problem, &params.strong, &wanted)?;
+            counts.stencils += wanted.iter().filter(|&&w| w).count();
+            counts.enlarged = rows.enlarged();
+            counts.flagged = select::conservative_nodes(problem, params, &rows, &mut kinds);
+            Some(rows)
+        };
+        let boundary = boundary_rows(problem, &kinds)?;
+        let cells = cell_rows(problem, &kinds)?;
+        counts.stencils += boundary.iter().flatten().count();
+        counts.cells = cells.iter().flatten().count();
+        Ok(Self { kinds, known, strong, boundary, cells, counts, stencil_seconds: start.elapsed().as_secs_f64() })
+    }
+
+    fn assemble<const D: usize>(self, problem: &Problem<'_, D>) -> Discretization {
+        let mut rhs = vec![0.0; self.kinds.len()];
+        let mut boundary_index = vec![u32::MAX; self.kinds.len()];
+        for (index, node) in problem.cloud.boundary().iter().enumerate() {
+            boundary_index[node.node as usize] = index as u32;
+        }
+        for (i, b) in rhs.iter_mut().enumerate() {
+            *b = match self.kinds[i] {
+                RowKind::Dirichlet => self.known[i].unwrap_or(0.0),
+                RowKind::Strong => strong_measure(problem, i) * problem.source.map_or(0.0, |f| f[i]),
+                RowKind::StrongBoundary => {
+                    self.boundary[boundary_index[i] as usize].as_ref().map_or(0.0, |row| boundary_measure(problem, i) * row.rhs)
+                }
+                RowKind::Conservative => self.cells[i].as_ref().map_or(0.0, |row| row.rhs),
+            };
+        }
+        let rows = DifferenceMatrix::from_rows(self.kinds.len(), |i, out| match self.kinds[i] {
+            RowKind::Dirichlet => out.add_to_row_sum(1.0),
+            RowKind::Strong => {
+                if let Some(strong) = &self.strong {
+                    let measure = strong_measure(problem, i);
+                    let (neighbors, row) = strong.row(problem, i);
+                    neighbors.iter().zip(row).for_each(|(&j, c)| out.push(j, -measure * c));
+                }
+            }
+            RowKind::StrongBoundary => {
+                if let Some(row) = &self.boundary[boundary_index[i] as usize] {
+                    let measure = boundary_measure(problem, i);
+                    row.neighbors.iter().zip(&row.coefficients).for_each(|(&j, c)| out.push(j, measure * c));
+                    out.add_to_row_sum(measure * row.row_sum);
+                }
+            }
+            RowKind::Conservative => {
+                if let Some(row) = &self.cells[i] {
+                    row.entries.iter().for_each(|&(j, t)| out.push(j, -t));
+                    out.add_to_row_sum(row.row_sum);
+                }
+            }
+        });
+        let volumes = (0..self.kinds.len())
+            .map(|i| self.cells[i].as_ref().map_or_else(|| strong_measure(problem, i), |row| row.volume))
+            .collect();
+        let Self { kinds, counts, stencil_seconds, .. } = self;
+        Discretization { rows, rhs, kinds, volumes, counts, stencil_seconds }
+    }
+}
+
+/// Volume by which a collocated equation is multiplied, so that its row is as large as those of its neighbours' cells.
+fn strong_measure<const D: usize>(problem: &Problem<'_, D>, i: usize) -> f64 {
+    problem.cloud.spacing()[i].powi(D as i32)
+}
+
+/// Area by which a collocated boundary condition is multiplied, for the same reason.
+fn boundary_measure<const D: usize>(problem: &Problem<'_, D>, i: usize) -> f64 {
+    problem.cloud.spacing()[i].powi(D as i32 - 1)
+}
+
+/// Collocated conditions, in the order of `cloud.boundary()`.
+fn boundary_rows<const D: usize>(
+    problem: &Problem<'_, D>,
+    kinds: &[RowKind],
+) -> Result<Vec<Option<BoundaryRow>>, MethodError> {
+    let nodes = problem.cloud.boundary();
+    (0..nodes.len())
+        .into_par_iter()
+        .map(|index| match kinds[nodes[index].node as usize] {
+            RowKind::StrongBoundary => boundary::collocate(problem, index).map(Some),
+            _ => Ok(None),
+        })
+        .collect()
+}
+
+/// Balances of the conservative nodes; nothing is built where there is none.
+fn cell_rows<const D: usize>(
+    problem: &Problem<'_, D>,
+    kinds: &[RowKind],
+) -> Result<Vec<Option<CellRow>>, MethodError> {
+    if !kinds.contains(&RowKind::Conservative) {
+        return Ok(vec![None; kinds.len()]);
+    }
+    let balance = CellBalance::new(problem)?;
+    (0..kinds.len())
+        .into_par_iter()
+        .map_init(CellScratch::default, |scratch, i| match kinds[i] {
+            RowKind::Conservative => balance.row(i, scratch).map(Some),
+            _ => Ok(None),
+        })
+        .collect()
+}

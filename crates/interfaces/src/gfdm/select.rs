@@ -1,0 +1,74 @@
+//! Which rows are conservative (Kraus et al. 2022, section 2.2.3 and appendix A).
+
+use rayon::prelude::*;
+
+use crate::Problem;
+use crate::gfdm::strong::{StrongRows, dominance_error};
+use crate::gfdm::{GfdmParams, Selection};
+use crate::method::RowKind;
+
+/// Dirichlet rows, rows of flux conditions, and strong rows at all other nodes.
+pub(super) fn boundary_kinds<const D: usize>(
+    problem: &Problem<'_, D>,
+    known: &[Option<f64>],
+    conservative_neumann: bool,
+) -> Vec<RowKind> {
+    let mut kinds = vec![RowKind::Strong; known.len()];
+    for node in problem.cloud.boundary() {
+        let i = node.node as usize;
+        kinds[i] = match (known[i], conservative_neumann) {
+            (Some(_), _) => RowKind::Dirichlet,
+            (None, true) => RowKind::Conservative,
+            (None, false) => RowKind::StrongBoundary,
+        };
+    }
+    kinds
+}
+
+/// Turns strong rows into conservative ones where the selection wants it; returns how many rows were flagged (23).
+pub(super) fn conservative_nodes<const D: usize>(
+    problem: &Problem<'_, D>,
+    params: &GfdmParams,
+    rows: &StrongRows,
+    kinds: &mut [RowKind],
+) -> usize {
+    if params.selection == Selection::None {
+        return 0;
+    }
+    let by_region = |i: usize| params.select_by_region && crosses_a_region(problem, i);
+    let flagged: Vec<bool> = (0..kinds.len())
+        .into_par_iter()
+        .map(|i| {
+            let dominated = || dominance_error(rows.row(problem, i).1) > params.selection_tolerance;
+            kinds[i] == RowKind::Strong && (dominated() || by_region(i))
+        })
+        .collect();
+    let neighbors_too = params.selection == Selection::FlaggedAndNeighbors;
+    let chosen: Vec<bool> = (0..kinds.len())
+        .into_par_iter()
+        .map(|i| {
+            let near_flagged = || problem.supports.lists.of(i).iter().any(|&j| flagged[j as usize]);
+            flagged[i] || (neighbors_too && near_flagged()) || crosses_a_jump(problem, i)
+        })
+        .collect();
+    for (kind, chosen) in kinds.iter_mut().zip(chosen) {
+        if chosen && *kind == RowKind::Strong {
+            *kind = RowKind::Conservative;
+        }
+    }
+    flagged.iter().filter(|&&f| f).count()
+}
+
+/// Whether the support of i reaches into another region.
+fn crosses_a_region<const D: usize>(problem: &Problem<'_, D>, i: usize) -> bool {
+    problem.supports.lists.of(i).iter().any(|&j| problem.labels[j as usize] != problem.labels[i])
+}
+
+/// Whether the support of i reaches over an interface where u or the flux jumps: stencils do not know of such jumps.
+fn crosses_a_jump<const D: usize>(problem: &Problem<'_, D>, i: usize) -> bool {
+    !problem.jumps.is_empty()
+        && problem.supports.lists.of(i).iter().any(|&j| {
+            let labels = (problem.labels[i], problem.labels[j as usize]);
+            labels.0 != labels.1 && problem.jump_between(labels.0, labels.1).is_some()
+        })
+}

@@ -1,0 +1,62 @@
+//! What a method is: a function from a discretised problem to a linear system, with the way back to a field.
+
+use meshless_sparse::DifferenceMatrix;
+
+use crate::{MethodError, Problem, gradient};
+
+/// A meshless discretisation of an elliptic interface problem.
+pub trait Method<const D: usize>: Sync {
+    /// The rows of the linear system, one for each node.
+    fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError>;
+
+    /// The gradient of a nodal field, every node in its own region.
+    ///
+    /// Unless a method knows better: the gradient of a least-squares fit to the nodes of the same region.
+    fn gradient(&self, problem: &Problem<'_, D>, u: &[f64]) -> Result<Vec<[f64; D]>, MethodError> {
+        gradient::recover(problem, u)
+    }
+}
+
+/// A linear system over the nodes, in difference form.
+#[derive(Debug, Clone)]
+pub struct Discretization {
+    /// Row i reads `sum_j a_ij (u_j - u_i) + r_i u_i = b_i`. Rows of nodes whose value is prescribed are empty:
+    /// the shared layer eliminates them.
+    pub rows: DifferenceMatrix,
+    /// Right-hand side b.
+    pub rhs: Vec<f64>,
+    /// How every row was made.
+    pub kinds: Vec<RowKind>,
+    /// Measure that belongs to every node: the volume of its cell where there is one, else `spacing^D`.
+    pub volumes: Vec<f64>,
+    /// What was built and why.
+    pub counts: Counts,
+    /// Wall-clock seconds spent on stencils and cells, before assembly.
+    pub stencil_seconds: f64,
+}
+
+/// How the row of a node was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RowKind {
+    /// The value is prescribed.
+    Dirichlet,
+    /// Collocation of the equation by a local least-squares stencil.
+    Strong,
+    /// Collocation of a boundary condition by a local least-squares stencil.
+    StrongBoundary,
+    /// Balance of fluxes over the node's Voronoi cell.
+    Conservative,
+}
+
+/// How much of everything a method built.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Least-squares stencils.
+    pub stencils: usize,
+    /// Stencils that needed a larger support than the one given.
+    pub enlarged: usize,
+    /// Interior nodes whose strong row is not diagonally dominant (the set `I_{sigma,0}` of Kraus et al. 2022).
+    pub flagged: usize,
+    /// Voronoi cells.
+    pub cells: usize,
+}

@@ -1,0 +1,159 @@
+//! The discretised problem: what every method reads, and nothing of how it was described.
+//!
+//! The equation is `-div(eta grad u) = f`. Across the interface from region A to region B, with the normal n pointing
+//! from A to B, `u_B - u_A = a` and `(eta du/dn)_B - (eta du/dn)_A = b`.
+
+use meshless_geometry::{Cloud, Domain, FaceId, RegionMap};
+use meshless_neighbors::NeighborLists;
+
+use crate::Field;
+
+/// The data of one region.
+#[derive(Debug, Clone)]
+pub struct Material<const D: usize> {
+    /// The diffusivity eta, positive.
+    pub diffusivity: Field<D>,
+    /// The source f; `None` where the scene has none.
+    pub source: Option<Field<D>>,
+}
+
+/// What is prescribed at a boundary point; n is the outward normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Condition {
+    /// `u = value`
+    Dirichlet(f64),
+    /// `du/dn = value`
+    Neumann(f64),
+    /// `eta du/dn = value`
+    Flux(f64),
+    /// `a u + b eta du/dn = g`
+    Robin {
+        /// Factor of the value.
+        a: f64,
+        /// Factor of the flux, not zero.
+        b: f64,
+        /// Right-hand side.
+        g: f64,
+    },
+}
+
+/// The boundary conditions as functions of position, for methods that need them off the nodes.
+pub trait BoundaryData<const D: usize>: Sync {
+    /// The condition on `face` at `point`, `None` where the problem gives none.
+    fn condition(&self, face: FaceId, point: &[f64; D]) -> Option<Condition>;
+}
+
+impl<const D: usize, F> BoundaryData<D> for F
+where
+    F: Fn(FaceId, &[f64; D]) -> Option<Condition> + Sync,
+{
+    fn condition(&self, face: FaceId, point: &[f64; D]) -> Option<Condition> {
+        self(face, point)
+    }
+}
+
+/// What jumps across the interface between two regions besides the diffusivity.
+#[derive(Debug, Clone)]
+pub struct InterfaceJump<const D: usize> {
+    /// The regions A and B; the normal points from A to B.
+    pub between: [u16; 2],
+    /// `u_B - u_A`, `None` for zero.
+    pub value: Option<Field<D>>,
+    /// `(eta du/dn)_B - (eta du/dn)_A`, `None` for zero.
+    pub flux: Option<Field<D>>,
+}
+
+/// The supports of all nodes: whom a node may use, and how far its interaction reaches.
+#[derive(Debug, Clone, Copy)]
+pub struct Supports<'a> {
+    /// Symmetric lists (distance d2 of Kraus et al. 2022, section 2.1).
+    pub lists: &'a NeighborLists,
+    /// Interaction radius `h_i` of every node.
+    pub radius: &'a [f64],
+}
+
+/// A problem on a cloud, with everything evaluated that lives on nodes.
+#[derive(Clone, Copy)]
+pub struct Problem<'a, const D: usize> {
+    /// The nodes.
+    pub cloud: &'a Cloud<D>,
+    /// The domain that the nodes fill.
+    pub domain: &'a Domain<D>,
+    /// Neighbour lists and interaction radii.
+    pub supports: Supports<'a>,
+    /// Geometry of the regions; tells where interfaces are.
+    pub regions: &'a RegionMap<D>,
+    /// Region of every node.
+    pub labels: &'a [u16],
+    /// Data of every region.
+    pub materials: &'a [Material<D>],
+    /// Diffusivity at every node, that of the node's own region.
+    pub eta: &'a [f64],
+    /// Source at every node, that of the node's own region; `None` if no region has one.
+    pub source: Option<&'a [f64]>,
+    /// Conditions of every boundary node, one for each of its touches, in the order of `cloud.boundary()`.
+    pub conditions: &'a [Vec<Condition>],
+    /// The same conditions as functions of position.
+    pub boundary: &'a dyn BoundaryData<D>,
+    /// Prescribed jumps.
+    pub jumps: &'a [InterfaceJump<D>],
+}
+
+impl<const D: usize> std::fmt::Debug for Problem<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Problem").field("nodes", &self.cloud.len()).field("regions", &self.materials.len()).finish()
+    }
+}
+
+impl<const D: usize> Problem<'_, D> {
+    /// The largest diffusivity of a node over the smallest.
+    pub fn contrast(&self) -> f64 {
+        let (low, high) = self.eta.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
+        high / low
+    }
+
+    /// The diffusivity if it is the same at every node.
+    pub fn uniform_diffusivity(&self) -> Option<f64> {
+        let first = *self.eta.first()?;
+        self.materials.iter().all(|m| m.diffusivity.as_constant() == Some(first)).then_some(first)
+    }
+
+    /// Dirichlet values: `Some(value)` at the nodes where u is prescribed.
+    ///
+    /// Where faces meet and several of them prescribe u, the value of the first face in the domain's order counts.
+    pub fn dirichlet(&self) -> Vec<Option<f64>> {
+        let mut known = vec![None; self.cloud.len()];
+        for (node, conditions) in self.cloud.boundary().iter().zip(self.conditions) {
+            known[node.node as usize] = conditions.iter().find_map(|c| match c {
+                Condition::Dirichlet(value) => Some(*value),
+                _ => None,
+            });
+        }
+        known
+    }
+
+    /// The prescribed jump between the regions of two nodes, with the sign that belongs to going from `from` to `to`.
+    pub fn jump_between(&self, from: u16, to: u16) -> Option<(&InterfaceJump<D>, f64)> {
+        self.jumps.iter().find_map(|jump| match jump.between {
+            [a, b] if (a, b) == (from, to) => Some((jump, 1.0)),
+            [a, b] if (b, a) == (from, to) => Some((jump, -1.0)),
+            _ => None,
+        })
+    }
+
+    /// Whether u is fixed somewhere: by a Dirichlet value, or by a Robin condition with `a != 0`.
+    pub fn is_anchored(&self) -> bool {
+        self.conditions.iter().flatten().any(Condition::anchors)
+    }
+}
+
+impl Condition {
+    /// Whether the condition fixes the constant of u.
+    pub fn anchors(&self) -> bool {
+        match *self {
+            Self::Dirichlet(_) => true,
+            Self::Robin { a, .. } => a != 0.0,
+            Self::Neumann(_) | Self::Flux(_) => false,
+        }
+    }
+}

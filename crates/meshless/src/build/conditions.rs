@@ -1,0 +1,127 @@
+//! Boundary conditions of a scene, at nodes and anywhere on the boundary.
+
+use meshless_geometry::{Cloud, Domain, FaceId};
+use meshless_interfaces::{BoundaryData, Condition, Field};
+
+use super::fields::{field, not_finite};
+use crate::Error;
+use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
+
+/// The conditions in the order of the scene: the first whose face and `where` match counts.
+pub(crate) struct Boundary<const D: usize> {
+    entries: Vec<Entry<D>>,
+}
+
+struct Entry<const D: usize> {
+    /// `None` for "all".
+    face: Option<FaceId>,
+    place: Option<Field<D>>,
+    kind: Kind<D>,
+}
+
+enum Kind<const D: usize> {
+    Dirichlet(Field<D>),
+    Neumann(Field<D>),
+    Flux(Field<D>),
+    Robin { a: Field<D>, b: Field<D>, g: Field<D> },
+}
+
+impl<const D: usize> Boundary<D> {
+    pub(crate) fn new(scene: &Scene, domain: &Domain<D>) -> Self {
+        let entries = scene
+            .boundaries
+            .iter()
+            .map(|spec| Entry {
+                face: domain.face(&spec.face),
+                place: spec.where_.as_ref().map(|w| field(&w.expr)),
+                kind: match &spec.condition {
+                    ConditionSpec::Dirichlet(e) => Kind::Dirichlet(field(&e.expr)),
+                    ConditionSpec::Neumann(e) => Kind::Neumann(field(&e.expr)),
+                    ConditionSpec::Flux(e) => Kind::Flux(field(&e.expr)),
+                    ConditionSpec::Robin { a, b, g } => {
+                        Kind::Robin { a: field(&a.expr), b: field(&b.expr), g: field(&g.expr) }
+                    }
+                },
+            })
+            .collect();
+        Self { entries }
+    }
+
+    /// Which entry of the scene holds on a face at a point.
+    fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
+        self.entries.iter().position(|entry| {
+            entry.face.is_none_or(|f| f == face) && entry.place.as_ref().is_none_or(|place| place.at(x) != 0.0)
+        })
+    }
+
+    /// The conditions of every boundary node, one for each of its faces, checked.
+    pub(crate) fn at_nodes(&self, scene: &Scene, cloud: &Cloud<D>) -> Result<Vec<Vec<Condition>>, Error> {
+        let mut all = Vec::with_capacity(cloud.boundary().len());
+        for node in cloud.boundary() {
+            let x = &cloud.points()[node.node as usize];
+            let mut conditions = Vec::with_capacity(node.touches.len());
+            for touch in &node.touches {
+                let index = self
+                    .entry(touch.face, x)
+                    .ok_or_else(|| missing_condition(scene, cloud, node.node as usize, x))?;
+                let condition = self.entries[index].kind.at(x);
+                check(scene, &scene.boundaries[index], &condition, x)?;
+                conditions.push(condition);
+            }
+            all.push(conditions);
+        }
+        Ok(all)
+    }
+}
+
+impl<const D: usize> BoundaryData<D> for Boundary<D> {
+    fn condition(&self, face: FaceId, point: &[f64; D]) -> Option<Condition> {
+        self.entry(face, point).map(|index| self.entries[index].kind.at(point))
+    }
+}
+
+impl<const D: usize> Kind<D> {
+    fn at(&self, x: &[f64; D]) -> Condition {
+        match self {
+            Self::Dirichlet(f) => Condition::Dirichlet(f.at(x)),
+            Self::Neumann(f) => Condition::Neumann(f.at(x)),
+            Self::Flux(f) => Condition::Flux(f.at(x)),
+            Self::Robin { a, b, g } => Condition::Robin { a: a.at(x), b: b.at(x), g: g.at(x) },
+        }
+    }
+}
+
+/// Values must be finite, and a Robin condition must have a flux term and not feed the field.
+fn check<const D: usize>(scene: &Scene, spec: &BoundarySpec, condition: &Condition, x: &[f64; D]) -> Result<(), Error> {
+    let finite = |value: f64, spec: &ExprField| {
+        if value.is_finite() { Ok(()) } else { Err(not_finite(scene, spec, value, x)) }
+    };
+    match (condition, &spec.condition) {
+        (Condition::Dirichlet(v), ConditionSpec::Dirichlet(e))
+        | (Condition::Neumann(v), ConditionSpec::Neumann(e))
+        | (Condition::Flux(v), ConditionSpec::Flux(e)) => finite(*v, e),
+        (&Condition::Robin { a, b, g }, ConditionSpec::Robin { a: a_spec, b: b_spec, g: g_spec }) => {
+            finite(a, a_spec)?;
+            finite(b, b_spec)?;
+            finite(g, g_spec)?;
+            if b == 0.0 {
+                let message = format!("b vanishes at {x:?}, so the condition has no flux term");
+                return Err(scene.error_at(b_spec, message, "prescribe u with `dirichlet` there").into());
+            }
+            if a / b < 0.0 {
+                let message = format!("a/b is negative at {x:?}: such a boundary feeds the field and has no unique solution in general");
+                return Err(scene.error_at(a_spec, message, "a and b of `a u + b eta du/dn = g` must have the same sign").into());
+            }
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A boundary node for which no entry of the scene matches.
+pub(crate) fn missing_condition<const D: usize>(scene: &Scene, cloud: &Cloud<D>, node: usize, x: &[f64]) -> Error {
+    let faces: Vec<String> =
+        cloud.boundary_of(node).map(|b| b.touches.iter().map(|t| format!("face {}", t.face.0)).collect()).unwrap_or_default();
+    let message = format!("no boundary condition holds at {x:?} ({})", faces.join(", "));
+    scene.error_at_boundaries(message, "add a [[boundaries]] entry for that face, or one with face = \"all\" at the end").into()
+}

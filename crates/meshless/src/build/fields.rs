@@ -1,0 +1,151 @@
+//! Expressions of a scene as fields, and their values at nodes.
+
+use std::sync::Arc;
+
+use meshless_expr::Expr;
+use meshless_interfaces::{Field, InterfaceJump, Material, ScalarField};
+
+use crate::Error;
+use crate::execute::Exact;
+use crate::scene::{ExprField, Scene};
+
+/// An expression with its derivatives, which are formed once.
+struct ExprScalar<const D: usize> {
+    value: Expr,
+    partials: [Expr; D],
+}
+
+impl<const D: usize> ScalarField<D> for ExprScalar<D> {
+    fn eval(&self, points: &[[f64; D]], out: &mut [f64]) {
+        self.value.eval_points(points, &[], out);
+    }
+
+    fn gradient(&self, point: &[f64; D]) -> Option<[f64; D]> {
+        Some(std::array::from_fn(|k| self.partials[k].eval(point)))
+    }
+}
+
+/// An expression as a field; a constant expression is a constant field.
+pub(crate) fn field<const D: usize>(expr: &Expr) -> Field<D> {
+    match expr.as_constant() {
+        Some(value) => Field::Constant(value),
+        None => {
+            let partials = std::array::from_fn(|k| expr.derivative(k));
+            Field::Function(Arc::new(ExprScalar { value: expr.clone(), partials }))
+        }
+    }
+}
+
+/// The data of all regions.
+pub(crate) fn materials<const D: usize>(scene: &Scene) -> Vec<Material<D>> {
+    scene
+        .regions
+        .iter()
+        .map(|r| Material { diffusivity: field(&r.diffusivity.expr), source: r.source.as_ref().map(|s| field(&s.expr)) })
+        .collect()
+}
+
+/// The prescribed jumps that are not zero everywhere.
+pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
+    let nonzero = |f: &Option<ExprField>| {
+        f.as_ref().filter(|f| f.expr.as_constant() != Some(0.0)).map(|f| field(&f.expr))
+    };
+    scene
+        .interfaces
+        .iter()
+        .map(|i| InterfaceJump {
+            between: i.between.map(|r| r as u16),
+            value: nonzero(&i.jump),
+            flux: nonzero(&i.flux_jump),
+        })
+        .filter(|j| j.value.is_some() || j.flux.is_some())
+        .collect()
+}
+
+/// The diffusivity at every node, positive and finite.
+pub(crate) fn nodal_diffusivity<const D: usize>(
+    scene: &Scene,
+    materials: &[Material<D>],
+    points: &[[f64; D]],
+    labels: &[u16],
+) -> Result<Vec<f64>, Error> {
+    let mut eta = vec![0.0; points.len()];
+    for (region, material) in materials.iter().enumerate() {
+        scatter(&material.diffusivity, region, points, labels, &mut eta);
+    }
+    for (i, &value) in eta.iter().enumerate() {
+        if !(value > 0.0 && value.is_finite()) {
+            let spec = &scene.regions[labels[i] as usize].diffusivity;
+            let message = format!("the diffusivity is {value} at {:?}; it must be positive and finite", points[i]);
+            return Err(scene.error_at(spec, message, "change the expression, or the region it is for").into());
+        }
+    }
+    Ok(eta)
+}
+
+/// The source at every node, finite; zero in regions that have none.
+pub(crate) fn nodal_source<const D: usize>(
+    scene: &Scene,
+    materials: &[Material<D>],
+    points: &[[f64; D]],
+    labels: &[u16],
+) -> Result<Vec<f64>, Error> {
+    let mut source = vec![0.0; points.len()];
+    for (region, material) in materials.iter().enumerate() {
+        if let Some(field) = &material.source {
+            scatter(field, region, points, labels, &mut source);
+        }
+    }
+    for (i, &value) in source.iter().enumerate() {
+        if let (false, Some(spec)) = (value.is_finite(), &scene.regions[labels[i] as usize].source) {
+            return Err(not_finite(scene, spec, value, &points[i]));
+        }
+    }
+    Ok(source)
+}
+
+/// The exact solution and its gradient at every node.
+pub(crate) fn exact<const D: usize>(scene: &Scene, points: &[[f64; D]], labels: &[u16]) -> Result<Exact<D>, Error> {
+    let mut exact = Exact { values: vec![0.0; points.len()], gradients: vec![[0.0; D]; points.len()] };
+    for (region, spec) in scene.regions.iter().enumerate() {
+        let Some(spec) = &spec.exact else { continue };
+        scatter(&field(&spec.expr), region, points, labels, &mut exact.values);
+        let mut component = vec![0.0; points.len()];
+        for axis in 0..D {
+            scatter(&field(&spec.expr.derivative(axis)), region, points, labels, &mut component);
+            for (i, gradient) in exact.gradients.iter_mut().enumerate() {
+                if labels[i] as usize == region {
+                    gradient[axis] = component[i];
+                }
+            }
+        }
+    }
+    for i in 0..points.len() {
+        let all = std::iter::once(exact.values[i]).chain(exact.gradients[i]);
+        if let (Some(value), Some(spec)) =
+            (all.into_iter().find(|v| !v.is_finite()), &scene.regions[labels[i] as usize].exact)
+        {
+            return Err(not_finite(scene, spec, value, &points[i]));
+        }
+    }
+    Ok(exact)
+}
+
+/// An expression gave something that is not a number where it was needed.
+pub(crate) fn not_finite<const D: usize>(scene: &Scene, spec: &ExprField, value: f64, x: &[f64; D]) -> Error {
+    let message = format!("the expression gives {value} at {x:?}");
+    scene.error_at(spec, message, "an expression must be finite wherever it is evaluated; `if(c, a, b)` guards a singular point").into()
+}
+
+/// Evaluates a field at the nodes of one region.
+fn scatter<const D: usize>(field: &Field<D>, region: usize, points: &[[f64; D]], labels: &[u16], out: &mut [f64]) {
+    let nodes: Vec<usize> = (0..points.len()).filter(|&i| labels[i] as usize == region).collect();
+    if let Some(value) = field.as_constant() {
+        nodes.iter().for_each(|&i| out[i] = value);
+        return;
+    }
+    let own: Vec<[f64; D]> = nodes.iter().map(|&i| points[i]).collect();
+    let mut values = vec![0.0; own.len()];
+    field.eval(&own, &mut values);
+    nodes.iter().zip(values).for_each(|(&i, value)| out[i] = value);
+}

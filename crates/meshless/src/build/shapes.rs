@@ -1,0 +1,131 @@
+//! Shapes, domain, regions and spacing of a scene.
+
+use std::sync::Arc;
+
+use meshless_expr::Expr;
+use meshless_geometry::{Aabb, Domain, GeometryError, Layout, LevelSet, RegionMap, Shape, Spacing};
+
+use crate::Error;
+use crate::scene::{BoundsSpec, DomainSpec, ExprField, LayoutName, Place, Scene, ShapeSpec};
+
+/// A level set with the derivatives of its expression.
+struct ExprLevelSet<const D: usize> {
+    value: Expr,
+    partials: [Expr; D],
+}
+
+impl<const D: usize> LevelSet<D> for ExprLevelSet<D> {
+    fn value(&self, x: &[f64; D]) -> f64 {
+        self.value.eval(x)
+    }
+
+    fn gradient(&self, x: &[f64; D]) -> [f64; D] {
+        std::array::from_fn(|k| self.partials[k].eval(x))
+    }
+}
+
+/// The domain with its holes.
+pub(crate) fn domain<const D: usize>(scene: &Scene) -> Result<Domain<D>, Error> {
+    let DomainSpec { shape: spec, bounds, place } = &scene.domain;
+    let bounds = bounds.as_ref().map(aabb).transpose().map_err(|e| located(place, e))?;
+    let outer = shape::<D>(spec).map_err(|e| located(place, e))?;
+    let mut domain = Domain::from_shape(outer, bounds).map_err(|e| located(place, e))?;
+    for hole in &scene.holes {
+        let cut = shape::<D>(&hole.shape).map_err(|e| located(&hole.place, e))?;
+        domain = domain.with_hole(&hole.name, cut).map_err(|e| located(&hole.place, e))?;
+    }
+    Ok(domain)
+}
+
+/// The regions, in the order of the scene.
+pub(crate) fn regions<const D: usize>(scene: &Scene) -> Result<RegionMap<D>, Error> {
+    let shapes = scene
+        .regions
+        .iter()
+        .map(|r| r.geometry.as_ref().map(shape::<D>).transpose().map_err(|e| located(&r.place, e)))
+        .collect::<Result<Vec<_>, _>>()?;
+    RegionMap::new(shapes).map_err(|e| located(&scene.regions[0].place, e))
+}
+
+/// The spacing of the cloud.
+pub(crate) fn spacing<const D: usize>(scene: &Scene) -> Spacing<D> {
+    let expr = &scene.points.spacing.expr;
+    match expr.as_constant() {
+        Some(spacing) => Spacing::Uniform(spacing),
+        None => {
+            let expr = expr.clone();
+            Spacing::Graded(Arc::new(move |x: &[f64; D]| expr.eval(x)))
+        }
+    }
+}
+
+/// The layout of the cloud.
+pub(crate) fn layout(scene: &Scene) -> Layout {
+    match scene.points.layout {
+        LayoutName::Grid => Layout::Grid,
+        LayoutName::Jittered => Layout::Jittered,
+        LayoutName::Irregular => Layout::Irregular,
+    }
+}
+
+/// An error of the generation of a cloud, at the spacing that asked for it.
+pub(crate) fn explain_cloud(scene: &Scene, error: GeometryError) -> Error {
+    match error {
+        GeometryError::InvalidSpacing { .. }
+        | GeometryError::SpacingTooLarge { .. }
+        | GeometryError::TooManyNodes { .. }
+        | GeometryError::GradedLattice { .. } => scene.error_at(&scene.points.spacing, error.to_string(), "").into(),
+        error => located(&scene.domain.place, error),
+    }
+}
+
+/// The same scene with the spacing multiplied.
+pub(crate) fn with_spacing_times(scene: &Scene, factor: f64) -> Scene {
+    let mut coarse = scene.clone();
+    let ExprField { text, expr, .. } = &scene.points.spacing;
+    let variables = &["x", "y", "z"][..scene.dimension];
+    coarse.points.spacing.expr = match expr.as_constant() {
+        Some(spacing) => Expr::constant(spacing * factor),
+        // Text that has parsed once parses within parentheses, too.
+        None => Expr::parse(&format!("{factor}*({text})"), variables).unwrap_or_else(|_| expr.clone()),
+    };
+    coarse
+}
+
+fn located(place: &Place, error: GeometryError) -> Error {
+    place.error(error.to_string(), "").into()
+}
+
+fn vector<const D: usize>(values: &[f64]) -> [f64; D] {
+    // The reader has checked the length.
+    std::array::from_fn(|k| values[k])
+}
+
+fn aabb<const D: usize>(spec: &BoundsSpec) -> Result<Aabb<D>, GeometryError> {
+    Aabb::new(vector(&spec.min), vector(&spec.max))
+}
+
+fn shape<const D: usize>(spec: &ShapeSpec) -> Result<Shape<D>, GeometryError> {
+    let all = |parts: &[ShapeSpec]| parts.iter().map(shape::<D>).collect::<Result<Vec<_>, _>>();
+    match spec {
+        ShapeSpec::Box(bounds) => Shape::cuboid(vector(&bounds.min), vector(&bounds.max)),
+        ShapeSpec::Sphere { center, radius } => Shape::ball(vector(center), *radius),
+        ShapeSpec::Cylinder { point, axis, radius, length } => {
+            Shape::cylinder(vector(point), vector(axis), *radius, *length)
+        }
+        ShapeSpec::Polygon(vertices) => Shape::polygon(vertices.iter().map(|v| vector(v)).collect()),
+        ShapeSpec::HalfSpace { point, normal } => Shape::half_space(vector(point), vector(normal)),
+        ShapeSpec::LevelSet(field) => Ok(Shape::level_set(Arc::new(ExprLevelSet::<D> {
+            value: field.expr.clone(),
+            partials: std::array::from_fn(|k| field.expr.derivative(k)),
+        }))),
+        ShapeSpec::Union(parts) => Shape::union(all(parts)?),
+        ShapeSpec::Intersection(parts) => Shape::intersection(all(parts)?),
+        ShapeSpec::Difference(parts) => {
+            let mut parts = all(parts)?.into_iter();
+            // The reader has checked that there is a first.
+            let first = parts.next().map_or_else(|| Shape::union(Vec::new()), Ok)?;
+            Ok(parts.fold(first, Shape::difference))
+        }
+    }
+}

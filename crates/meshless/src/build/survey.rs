@@ -1,0 +1,65 @@
+//! What can be told about a scene without a cloud.
+
+use meshless_geometry::estimate_nodes;
+
+use super::fields::materials;
+use super::shapes::{domain, regions, spacing, explain_cloud};
+use crate::Error;
+use crate::scene::{Scene, ShapeSpec};
+
+/// Points along each axis at which a variable diffusivity is sampled.
+const SAMPLES_PER_AXIS: [usize; 3] = [257, 65, 17];
+
+/// Whether the boundary is anything but the faces of a box.
+pub(crate) fn is_curved(scene: &Scene) -> bool {
+    !matches!(scene.domain.shape, ShapeSpec::Box(_)) || !scene.holes.is_empty()
+}
+
+/// About how many nodes the cloud will have.
+pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
+    match scene.dimension {
+        1 => estimated_nodes_in::<1>(scene),
+        2 => estimated_nodes_in::<2>(scene),
+        _ => estimated_nodes_in::<3>(scene),
+    }
+}
+
+fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
+    estimate_nodes(&domain::<D>(scene)?, &spacing::<D>(scene)).map_err(|e| explain_cloud(scene, e))
+}
+
+/// Largest over smallest diffusivity: of the constants where all are constant, else of samples on a lattice.
+pub(crate) fn sampled_contrast(scene: &Scene) -> Result<f64, Error> {
+    let constants: Option<Vec<f64>> = scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
+    match (constants, scene.dimension) {
+        (Some(values), _) => Ok(ratio(values.into_iter())),
+        (None, 1) => sampled_contrast_in::<1>(scene),
+        (None, 2) => sampled_contrast_in::<2>(scene),
+        (None, _) => sampled_contrast_in::<3>(scene),
+    }
+}
+
+fn sampled_contrast_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
+    let (domain, regions, materials) = (domain::<D>(scene)?, regions::<D>(scene)?, materials::<D>(scene));
+    let (bounds, count) = (domain.bounds(), SAMPLES_PER_AXIS[D - 1]);
+    let total = count.pow(D as u32);
+    let lengths = bounds.lengths();
+    let values = (0..total).filter_map(|index| {
+        let x: [f64; D] = std::array::from_fn(|k| {
+            let along = (index / count.pow(k as u32)) % count;
+            bounds.min[k] + lengths[k] * along as f64 / (count - 1) as f64
+        });
+        if domain.level(&x) > 0.0 {
+            return None;
+        }
+        let eta = materials[regions.label(&x, 0.0) as usize].diffusivity.at(&x);
+        // What is not positive is refused when the nodes are known, with its place in the scene.
+        (eta > 0.0 && eta.is_finite()).then_some(eta)
+    });
+    Ok(ratio(values))
+}
+
+fn ratio(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
+    if low.is_finite() && high > 0.0 { high / low } else { 1.0 }
+}

@@ -1,0 +1,42 @@
+//! What can go wrong between a scene and its solution.
+
+use meshless_geometry::GeometryError;
+use meshless_interfaces::MethodError;
+use meshless_neighbors::NeighborError;
+use meshless_output::OutputError;
+use thiserror::Error;
+
+use crate::scene::SceneError;
+
+/// Why a scene has no solution.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The scene is wrong: says where and what to do.
+    #[error(transparent)]
+    Scene(Box<SceneError>),
+    /// Shapes, domain or cloud.
+    #[error("geometry: {0}")]
+    Geometry(#[from] GeometryError),
+    /// Neighbour lists.
+    #[error("neighbour lists: {0}")]
+    Neighbors(#[from] NeighborError),
+    /// Discretisation or solve.
+    #[error("{0}")]
+    Method(#[from] MethodError),
+    /// Pictures and files.
+    #[error("output: {0}")]
+    Output(#[from] OutputError),
+}
+
+impl From<SceneError> for Error {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(Box::new(error))
+    }
+}
+
+impl Error {
+    /// Whether the input is at fault, rather than the solve.
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Scene(_))
+    }
+}

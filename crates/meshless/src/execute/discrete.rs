@@ -1,0 +1,145 @@
+//! The discretised problem of a scene, with everything it borrows from.
+
+use std::time::Instant;
+
+use meshless_geometry::{Cloud, CloudParams, Domain, FaceId, RegionMap, generate};
+use meshless_interfaces::gfdm::Gfdm;
+use meshless_interfaces::{
+    BoundaryData, Condition, Field, InterfaceJump, Material, Method, MethodError, Problem, Supports,
+};
+use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
+
+use super::Progress;
+use crate::build::{self, Boundary};
+use crate::plan::{Plan, Stage};
+use crate::report::Seconds;
+use crate::scene::Scene;
+use crate::{Error, MAX_NODES};
+
+/// Cloud, supports, coefficients and conditions of a scene.
+pub(crate) struct Discrete<const D: usize> {
+    pub(crate) domain: Domain<D>,
+    pub(crate) regions: RegionMap<D>,
+    pub(crate) cloud: Cloud<D>,
+    pub(crate) labels: Vec<u16>,
+    pub(crate) eta: Vec<f64>,
+    radius: Vec<f64>,
+    lists: NeighborLists,
+    materials: Vec<Material<D>>,
+    source: Option<Vec<f64>>,
+    boundary: Boundary<D>,
+    conditions: Vec<Vec<Condition>>,
+    jumps: Vec<InterfaceJump<D>>,
+}
+
+/// The exact solution at the nodes.
+pub(crate) struct Exact<const D: usize> {
+    pub(crate) values: Vec<f64>,
+    pub(crate) gradients: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Discrete<D> {
+    pub(super) fn build(
+        scene: &Scene,
+        plan: &Plan,
+        progress: &mut dyn Progress,
+        seconds: &mut Seconds,
+    ) -> Result<Self, Error> {
+        progress.stage(Stage::Points);
+        let start = Instant::now();
+        let domain = build::domain::<D>(scene)?;
+        let regions = build::regions::<D>(scene)?;
+        let params = CloudParams {
+            spacing: build::spacing::<D>(scene),
+            layout: build::layout(scene),
+            seed: scene.points.seed,
+            max_nodes: MAX_NODES,
+        };
+        let cloud = generate(&domain, &params).map_err(|e| build::explain_cloud(scene, e))?;
+        seconds.points = start.elapsed().as_secs_f64();
+
+        progress.stage(Stage::Neighbors);
+        let start = Instant::now();
+        let radius: Vec<f64> = cloud.spacing().iter().map(|s| plan.method.support * s).collect();
+        let lists = within_radius(cloud.points(), Radius::PerPoint(&radius), Distance::D2)?;
+        seconds.neighbors = start.elapsed().as_secs_f64();
+
+        let start = Instant::now();
+        let labels = if plan.runs(Stage::Regions) {
+            progress.stage(Stage::Regions);
+            let labels = regions.labels(&cloud);
+            build::check_regions_are_met(scene, &labels)?;
+            build::check_interfaces_touch(scene, &labels, &lists)?;
+            labels
+        } else {
+            vec![0; cloud.len()]
+        };
+        let materials = build::materials::<D>(scene);
+        let eta = build::nodal_diffusivity(scene, &materials, cloud.points(), &labels)?;
+        let source = plan
+            .runs(Stage::Source)
+            .then(|| build::nodal_source(scene, &materials, cloud.points(), &labels))
+            .transpose()?;
+        let boundary = Boundary::new(scene, &domain);
+        let conditions = boundary.at_nodes(scene, &cloud)?;
+        let jumps = build::jumps::<D>(scene);
+        seconds.stencils = start.elapsed().as_secs_f64();
+        Ok(Self { domain, regions, cloud, labels, eta, radius, lists, materials, source, boundary, conditions, jumps })
+    }
+
+    /// The problem as methods see it.
+    pub(crate) fn problem(&self) -> Problem<'_, D> {
+        Problem {
+            cloud: &self.cloud,
+            domain: &self.domain,
+            supports: Supports { lists: &self.lists, radius: &self.radius },
+            regions: &self.regions,
+            labels: &self.labels,
+            materials: &self.materials,
+            eta: &self.eta,
+            source: self.source.as_deref(),
+            conditions: &self.conditions,
+            boundary: &self.boundary as &dyn BoundaryData<D>,
+            jumps: &self.jumps,
+        }
+    }
+
+    /// The spatial method of a plan. This is the one place that knows which methods there are.
+    pub(super) fn method(&self, plan: &Plan) -> Box<dyn Method<D>> {
+        Box::new(Gfdm { params: plan.method.gfdm })
+    }
+
+    /// Measure that belongs to each node: `spacing^D`, half of it on a face, a quarter on an edge, an eighth at a corner.
+    pub(super) fn measures(&self) -> Vec<f64> {
+        let mut measures: Vec<f64> = self.cloud.spacing().iter().map(|s| s.powi(D as i32)).collect();
+        for node in self.cloud.boundary() {
+            measures[node.node as usize] *= 0.5_f64.powi(node.touches.len().min(D) as i32);
+        }
+        measures
+    }
+
+    /// The exact solution and its gradient at the nodes, each in its own region.
+    pub(super) fn exact(&self, scene: &Scene) -> Result<Exact<D>, Error> {
+        build::exact(scene, self.cloud.points(), &self.labels)
+    }
+
+    /// An error of a method or of the solver, in terms of the scene where that is possible.
+    pub(super) fn explain(&self, scene: &Scene, error: MethodError) -> Error {
+        match error {
+            MethodError::NoCondition { node, ref position } => {
+                build::missing_condition(scene, &self.cloud, node, position)
+            }
+            error => Error::Method(error),
+        }
+    }
+
+    /// Names of the faces of the domain.
+    pub(crate) fn face_name(&self, face: FaceId) -> &str {
+        &self.domain.faces()[face.0 as usize]
+    }
+
+    /// The diffusivity of a region.
+    pub(crate) fn diffusivity(&self, region: u16) -> &Field<D> {
+        &self.materials[region as usize].diffusivity
+    }
+}

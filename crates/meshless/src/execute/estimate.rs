@@ -1,0 +1,55 @@
+//! The error estimate: the same scene on a cloud of twice the spacing, compared with the solution.
+//!
+//! With an error of order q in the spacing h, `u_2h - u_h = (2^q - 1) e_h` up to higher orders, so the norm of the
+//! difference over `2^q - 1` estimates that of the error. Where something jumps at an interface q = 1 is taken, which
+//! every method here reaches; else the order of the stencils. On clouds of irregular nodes the difference is itself
+//! irregular; expect a factor of three.
+
+use meshless_interfaces::Sampler;
+use rayon::prelude::*;
+
+use super::{Silent, Solved, solve_in};
+use crate::norms::ErrorNorms;
+use crate::plan::{Effect, Plan};
+use crate::report::Estimate;
+use crate::scene::Scene;
+use crate::{Error, build};
+
+/// Spacing of the coarser cloud over that of the finer one.
+const RATIO: f64 = 2.0;
+
+pub(super) fn against_coarser<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    fine: &Solved<D>,
+) -> Result<Estimate, Error> {
+    let coarse_scene = build::with_spacing_times(scene, RATIO);
+    let coarse = match solve_in::<D>(&coarse_scene, &plan.companion(), &mut Silent) {
+        Ok(coarse) => coarse,
+        // A region or a gap that the coarser cloud does not resolve is no fault of the scene.
+        Err(error) => return Ok(Estimate { l2: None, why_not: Some(format!("no solution at twice the spacing: {error}")) }),
+    };
+    let problem = fine.discrete.problem();
+    let sampler = Sampler::new(&problem, &fine.system.u)?;
+    let measures = coarse.discrete.measures();
+    let values: Vec<Option<(f64, u16)>> = coarse
+        .discrete
+        .cloud
+        .points()
+        .par_iter()
+        .map_init(|| sampler.scratch(), |scratch, x| sampler.at(x, scratch).map(|s| (s.value, s.region)))
+        .collect();
+    let mut norms = ErrorNorms::default();
+    for (i, value) in values.iter().enumerate() {
+        if let Some((value, region)) = value {
+            if *region == coarse.discrete.labels[i] {
+                norms.add(measures[i], coarse.system.u[i] - value, *value);
+            }
+        }
+    }
+    let smooth = !plan.effects.iter().any(|e| {
+        matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump)
+    });
+    let order = if smooth { plan.method.gfdm.strong.degree as i32 } else { 1 };
+    Ok(Estimate { l2: Some(norms.l2() / (RATIO.powi(order) - 1.0)), why_not: None })
+}

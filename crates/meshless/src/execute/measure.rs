@@ -1,0 +1,64 @@
+//! Errors against the exact solution, and values at the probes.
+
+use std::collections::BTreeMap;
+
+use meshless_interfaces::Sampler;
+
+use super::Solved;
+use super::discrete::Exact;
+use crate::Error;
+use crate::norms::ErrorNorms;
+use crate::report::{Errors, Probe, RegionErrors};
+use crate::scene::Scene;
+
+/// Norms over all nodes and over each region.
+pub(super) fn errors<const D: usize>(
+    scene: &Scene,
+    solved: &Solved<D>,
+    exact: &Exact<D>,
+    gradient: &[[f64; D]],
+) -> Errors {
+    let discrete = &solved.discrete;
+    let volumes = discrete.measures();
+    let (mut all, mut slope) = (ErrorNorms::default(), ErrorNorms::default());
+    let mut regions = vec![ErrorNorms::default(); scene.regions.len()];
+    for (i, &u) in solved.system.u.iter().enumerate() {
+        let error = u - exact.values[i];
+        all.add(volumes[i], error, exact.values[i]);
+        regions[discrete.labels[i] as usize].add(volumes[i], error, exact.values[i]);
+        let difference: [f64; D] = std::array::from_fn(|k| gradient[i][k] - exact.gradients[i][k]);
+        slope.add(volumes[i], norm(&difference), norm(&exact.gradients[i]));
+    }
+    let regions: BTreeMap<String, RegionErrors> = scene
+        .regions
+        .iter()
+        .zip(&regions)
+        .map(|(region, norms)| (region.name.clone(), RegionErrors { l2: norms.l2(), linf: norms.linf() }))
+        .collect();
+    Errors { l2: all.l2(), linf: all.linf(), gradient_linf: slope.linf(), regions }
+}
+
+/// Values at the probes; a probe outside of the domain has none.
+pub(super) fn probes<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<Vec<Probe>, Error> {
+    if scene.probes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let problem = solved.discrete.problem();
+    let sampler = Sampler::new(&problem, &solved.system.u)?;
+    let mut scratch = sampler.scratch();
+    let tolerance = 1e-9 * problem.domain.bounds().diameter();
+    Ok(scene
+        .probes
+        .iter()
+        .map(|probe| {
+            let at: [f64; D] = std::array::from_fn(|k| probe[k]);
+            let inside = problem.domain.contains(&at, tolerance);
+            let value = if inside { sampler.at(&at, &mut scratch).map(|s| s.value) } else { None };
+            Probe { at: at.to_vec(), value }
+        })
+        .collect())
+}
+
+fn norm<const D: usize>(x: &[f64; D]) -> f64 {
+    x.iter().map(|a| a * a).sum::<f64>().sqrt()
+}

@@ -1,0 +1,111 @@
+//! From a plan to a solution, stage by stage; what the plan skips is not built.
+
+mod discrete;
+mod estimate;
+mod measure;
+mod picture;
+mod summary;
+
+use std::time::Instant;
+
+use meshless_interfaces::{Discretization, SystemParams, SystemSolution, solve};
+
+use crate::plan::{Plan, Stage};
+use crate::report::{Estimate, Report, Seconds};
+use crate::scene::Scene;
+use crate::{Error, NodalField, Picture};
+use discrete::Discrete;
+
+/// Told what is being done; for progress bars.
+pub trait Progress {
+    /// A stage begins.
+    fn stage(&mut self, stage: Stage);
+}
+
+/// Says nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn stage(&mut self, _stage: Stage) {}
+}
+
+/// A solved scene.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Figures about the solve.
+    pub report: Report,
+    /// The field at the nodes.
+    pub field: NodalField,
+    /// The field as a picture, where the plan draws one.
+    pub picture: Option<Picture>,
+}
+
+/// Solves a scene as its plan says.
+pub fn execute(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solution, Error> {
+    match scene.dimension {
+        1 => execute_in::<1>(scene, plan, progress),
+        2 => execute_in::<2>(scene, plan, progress),
+        _ => execute_in::<3>(scene, plan, progress),
+    }
+}
+
+/// A solve without what is derived from it.
+struct Solved<const D: usize> {
+    discrete: Discrete<D>,
+    discretization: Discretization,
+    system: SystemSolution,
+    seconds: Seconds,
+}
+
+fn solve_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solved<D>, Error> {
+    let mut seconds = Seconds::default();
+    let discrete = Discrete::build(scene, plan, progress, &mut seconds)?;
+    let problem = discrete.problem();
+    progress.stage(if plan.runs(Stage::Cells) { Stage::Cells } else { Stage::LaplacianStencils });
+    let start = Instant::now();
+    let discretization = discrete.method(plan).discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
+    seconds.stencils += discretization.stencil_seconds;
+    seconds.assembly = start.elapsed().as_secs_f64() - discretization.stencil_seconds;
+    progress.stage(Stage::Solve);
+    let start = Instant::now();
+    let params = SystemParams { solver: plan.solver.clone(), split_floating: plan.runs(Stage::FloatingConstants) };
+    let system = solve(&problem, &discretization, &params).map_err(|e| discrete.explain(scene, e))?;
+    seconds.solve = start.elapsed().as_secs_f64();
+    Ok(Solved { discrete, discretization, system, seconds })
+}
+
+fn execute_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solution, Error> {
+    let start = Instant::now();
+    let solved = solve_in::<D>(scene, plan, progress)?;
+    let mut seconds = solved.seconds.clone();
+    let post = Instant::now();
+    let problem = solved.discrete.problem();
+    let u = &solved.system.u;
+    let gradient = if plan.runs(Stage::Gradient) {
+        progress.stage(Stage::Gradient);
+        Some(solved.discrete.method(plan).gradient(&problem, u)?)
+    } else {
+        None
+    };
+    let exact = plan.runs(Stage::Errors).then(|| solved.discrete.exact(scene)).transpose()?;
+    let errors = match (&exact, &gradient) {
+        (Some(exact), Some(gradient)) => Some(measure::errors(scene, &solved, exact, gradient)),
+        _ => None,
+    };
+    let probes = measure::probes(scene, &solved)?;
+    seconds.post = post.elapsed().as_secs_f64();
+    progress.stage(Stage::Estimate);
+    let before = Instant::now();
+    let estimate = if plan.runs(Stage::Estimate) {
+        estimate::against_coarser(scene, plan, &solved)?
+    } else {
+        Estimate { l2: None, why_not: Some("not asked for".to_owned()) }
+    };
+    seconds.estimate = before.elapsed().as_secs_f64();
+    let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, &solved)).transpose()?;
+    seconds.total = start.elapsed().as_secs_f64();
+    let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), &solved.discretization.kinds);
+    let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
+    Ok(Solution { report, field, picture })
+}

@@ -1,0 +1,53 @@
+//! The field at the nodes, in three coordinates whatever the dimension.
+
+use meshless_interfaces::RowKind;
+
+use crate::execute::Discrete;
+
+/// Nodal values of a solution.
+#[derive(Debug, Clone)]
+pub struct NodalField {
+    /// 1, 2 or 3.
+    pub dimension: usize,
+    /// Coordinates; those beyond the dimension are zero.
+    pub points: Vec<[f64; 3]>,
+    /// The solution.
+    pub u: Vec<f64>,
+    /// Its gradient, each node in its own region.
+    pub gradient: Option<Vec<[f64; 3]>>,
+    /// The exact solution, where the scene has one.
+    pub exact: Option<Vec<f64>>,
+    /// The diffusivity.
+    pub eta: Vec<f64>,
+    /// The region.
+    pub region: Vec<u16>,
+    /// How the row of the node was made.
+    pub kind: Vec<RowKind>,
+}
+
+impl NodalField {
+    pub(crate) fn new<const D: usize>(
+        discrete: &Discrete<D>,
+        u: &[f64],
+        gradient: Option<Vec<[f64; D]>>,
+        exact: Option<Vec<f64>>,
+        kinds: &[RowKind],
+    ) -> Self {
+        Self {
+            dimension: D,
+            points: discrete.cloud.points().iter().map(padded).collect(),
+            u: u.to_vec(),
+            gradient: gradient.map(|g| g.iter().map(padded).collect()),
+            exact,
+            eta: discrete.eta.clone(),
+            region: discrete.labels.clone(),
+            kind: kinds.to_vec(),
+        }
+    }
+}
+
+fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    let mut padded = [0.0; 3];
+    padded[..D].copy_from_slice(x);
+    padded
+}

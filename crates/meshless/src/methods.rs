@@ -1,0 +1,46 @@
+//! The methods, for people to choose from.
+
+/// A method that a scene can name.
+#[derive(Debug, Clone, Copy)]
+pub struct MethodInfo {
+    /// Name in `[method] name`.
+    pub name: &'static str,
+    /// Observed order of u in L2 where something jumps at an interface, and where nothing does.
+    pub order: &'static str,
+    /// Dimensions.
+    pub dimensions: &'static str,
+    /// What it is for, and what it cannot do.
+    pub limits: &'static str,
+}
+
+/// All methods that can be used today.
+pub const METHODS: &[MethodInfo] = &[
+    MethodInfo {
+        name: "gfdm-classical",
+        order: "1 / 2",
+        dimensions: "1, 2, 3",
+        limits: "stencils at every node; the diffusivity is smeared over an interface: wrong for stiff inclusions, no \
+                 prescribed jumps; best where nothing jumps",
+    },
+    MethodInfo {
+        name: "gfdm-positive",
+        order: "none / 2",
+        dimensions: "1, 2, 3",
+        limits: "balances only where a stencil is not diagonally dominant: maximum principle, but no conservation; \
+                 for comparison",
+    },
+    MethodInfo {
+        name: "gfdm-hybrid",
+        order: "1 / 2",
+        dimensions: "1, 2, 3",
+        limits: "balances near interfaces, stencils elsewhere: maximum principle, any contrast, jumps of u and of the \
+                 flux",
+    },
+    MethodInfo {
+        name: "gfdm-conservative",
+        order: "1 / 1-2",
+        dimensions: "1, 2, 3",
+        limits: "balances over the Voronoi cell of every node: conservative, maximum principle, any contrast; second \
+                 order only on regular clouds",
+    },
+];

@@ -1,0 +1,114 @@
+//! Decisions: method, solver, stages.
+
+use meshless_interfaces::gfdm::{GfdmParams, Selection};
+use meshless_sparse::{PreconditionerKind, SolverKind, SolverParams};
+
+use super::effects::{Effect, Survey};
+use super::{MethodPlan, Skipped, Stage};
+use crate::Error;
+use crate::scene::{MethodName, Scene, SolverName};
+
+/// Interaction radius in units of the spacing, by dimension: about 6, 27 and 45 neighbours. Not a distance that
+/// occurs in a lattice, where round-off would decide who is a neighbour.
+const SUPPORT: [f64; 3] = [3.1, 2.9, 2.2];
+
+/// Unknowns up to which the direct solver is faster than the Krylov solver, by dimension; see `docs/sparse.md`.
+const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 20_000.0, 4_000.0];
+
+/// Relative true residual at which the Krylov solver stops.
+const TOLERANCE: f64 = 1e-11;
+
+/// Contrast above which a region may be stiff enough for its constant to be split off.
+pub(super) const FLOATING_CONTRAST: f64 = 10.0;
+
+pub(super) fn method(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error> {
+    let (name, why) = match scene.method.name {
+        MethodName::Auto if survey.has_interface() => {
+            (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere".to_owned())
+        }
+        MethodName::Auto => (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned()),
+        name => (name, "asked for by the scene".to_owned()),
+    };
+    let mut gfdm = match name {
+        MethodName::GfdmClassical => GfdmParams::classical(),
+        MethodName::GfdmConservative => GfdmParams::conservative(),
+        MethodName::GfdmPositive => GfdmParams::positive(),
+        _ => GfdmParams::hybrid(),
+    };
+    if !survey.has_interface() {
+        gfdm.strong.smoothing = 0;
+    }
+    let options = &scene.method.options;
+    gfdm.strong.smoothing = options.smoothing.unwrap_or(gfdm.strong.smoothing);
+    gfdm.strong.log_scaling = options.log_scaling.unwrap_or(gfdm.strong.log_scaling);
+    gfdm.strong.correction = options.correction.unwrap_or(gfdm.strong.correction);
+    gfdm.strong.degree = scene.method.order.unwrap_or(gfdm.strong.degree);
+    gfdm.conservative_neumann = options.conservative_neumann.unwrap_or(gfdm.conservative_neumann);
+    gfdm.selection_tolerance = options.selection_tolerance.unwrap_or(gfdm.selection_tolerance);
+    // A scene that names the method gets the paper's selection; where the choice is ours, regions tell where
+    // interfaces are, also where a jump is too small to spoil the diagonal dominance.
+    gfdm.select_by_region = scene.method.name == MethodName::Auto && survey.has_interface();
+    let support = options.support.unwrap_or(SUPPORT[scene.dimension - 1]);
+    Ok(MethodPlan { name, why, support, gfdm })
+}
+
+pub(super) fn solver(scene: &Scene, unknowns: f64) -> SolverParams {
+    let direct = unknowns <= DIRECT_LIMIT[scene.dimension - 1];
+    let kind = match scene.method.solver {
+        SolverName::Direct => SolverKind::Direct,
+        SolverName::BiCgStab => SolverKind::BiCgStab { l: 2 },
+        SolverName::Gmres => SolverKind::Gmres { restart: 60 },
+        SolverName::Auto | SolverName::Multigrid if direct => SolverKind::Direct,
+        SolverName::Auto | SolverName::Multigrid => SolverKind::BiCgStab { l: 2 },
+    };
+    SolverParams { kind, preconditioner: PreconditionerKind::Ilu0, tolerance: TOLERANCE, ..SolverParams::default() }
+}
+
+pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Vec<Stage>, Vec<Skipped>) {
+    let mut stages = Vec::new();
+    let mut skipped = Vec::new();
+    let mut decide = |runs: bool, stage: Stage, why: &'static str| {
+        if runs {
+            stages.push(stage);
+        } else {
+            skipped.push(Skipped { what: stage.name(), why });
+        }
+    };
+    let exact = scene.regions.iter().all(|r| r.exact.is_some());
+    let gfdm = &method.gfdm;
+    let conservative_boundary =
+        gfdm.conservative_neumann && survey.has(|e| matches!(e, Effect::Neumann | Effect::Flux | Effect::Robin));
+    let stencils = gfdm.selection != Selection::All;
+    let variable = !survey.uniform;
+    let selects = matches!(gfdm.selection, Selection::Flagged | Selection::FlaggedAndNeighbors);
+    decide(true, Stage::Points, "");
+    decide(true, Stage::Neighbors, "");
+    decide(scene.regions.len() > 1, Stage::Regions, "there is one region");
+    decide(variable, Stage::Diffusivity, "the diffusivity is one constant");
+    decide(survey.has(|e| matches!(e, Effect::Source)), Stage::Source, "the scene has no source");
+    decide(stencils && !variable, Stage::LaplacianStencils, if stencils { "the diffusivity varies" } else { "every row is conservative" });
+    decide(stencils && variable, Stage::DiffusionStencils, if stencils { "the diffusivity is one constant" } else { "every row is conservative" });
+    decide(selects && stencils, Stage::NodeSelection, "the method does not mix rows");
+    decide(selects || !stencils || conservative_boundary, Stage::Cells, "no row is conservative");
+    decide(true, Stage::Assembly, "");
+    let may_float = survey.contrast > FLOATING_CONTRAST;
+    decide(may_float, Stage::FloatingConstants, "no region is much stiffer than its neighbours");
+    decide(true, Stage::Solve, "");
+    decide(exact || scene.output.vtu, Stage::Gradient, "neither exact solution nor field output asks for it");
+    decide(exact, Stage::Errors, "the scene has no exact solution");
+    decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
+    decide(true, Stage::Estimate, "");
+    decide(scene.output.vtu, Stage::Vtu, "not asked for");
+    decide(scene.output.plot, Stage::Plot, "not asked for");
+    let mut absent = |present: bool, what: &'static str, why: &'static str| {
+        if !present {
+            skipped.push(Skipped { what, why });
+        }
+    };
+    absent(survey.has_interface(), "interface", "nothing jumps anywhere");
+    absent(survey.has(|e| matches!(e, Effect::ValueJump)), "value jump", "none is given");
+    absent(survey.has(|e| matches!(e, Effect::FluxJump)), "flux jump", "none is given");
+    absent(false, "time", "the scene is steady");
+    absent(false, "free space", "the domain is bounded");
+    (stages, skipped)
+}

@@ -1,0 +1,120 @@
+//! What a scene calls for.
+
+use std::fmt;
+
+use crate::Error;
+use crate::build;
+use crate::scene::{ConditionSpec, ExprField, Scene};
+
+/// Something that a scene has and that costs something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Effect {
+    /// The diffusivity differs between regions; the ratio of the largest to the smallest, as far as sampled.
+    DiffusivityJump {
+        /// Largest over smallest diffusivity.
+        contrast: f64,
+    },
+    /// The diffusivity varies within a region.
+    VariableDiffusivity,
+    /// u jumps across an interface.
+    ValueJump,
+    /// The flux jumps across an interface.
+    FluxJump,
+    /// There is a source.
+    Source,
+    /// A prescribed normal derivative.
+    Neumann,
+    /// A prescribed flux.
+    Flux,
+    /// A mixed condition.
+    Robin,
+    /// Nothing fixes the constant of u.
+    PureNeumann,
+    /// The domain has holes.
+    Holes,
+    /// The boundary is not a box.
+    CurvedBoundary,
+    /// The spacing depends on position.
+    GradedCloud,
+}
+
+impl Effect {
+    /// The name used in reports.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::DiffusivityJump { .. } => "diffusivity jump",
+            Self::VariableDiffusivity => "variable diffusivity",
+            Self::ValueJump => "value jump",
+            Self::FluxJump => "flux jump",
+            Self::Source => "source",
+            Self::Neumann => "neumann boundary",
+            Self::Flux => "flux boundary",
+            Self::Robin => "robin boundary",
+            Self::PureNeumann => "pure neumann",
+            Self::Holes => "holes",
+            Self::CurvedBoundary => "curved boundary",
+            Self::GradedCloud => "graded cloud",
+        }
+    }
+}
+
+impl fmt::Display for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DiffusivityJump { contrast } => write!(f, "{} ({contrast:.3e})", self.name()),
+            _ => f.write_str(self.name()),
+        }
+    }
+}
+
+/// What was found out about a scene without building anything.
+#[derive(Debug, Clone)]
+pub(super) struct Survey {
+    pub(super) effects: Vec<Effect>,
+    /// Whether all regions have one and the same constant diffusivity.
+    pub(super) uniform: bool,
+    /// Largest over smallest diffusivity, as far as sampled.
+    pub(super) contrast: f64,
+}
+
+impl Survey {
+    pub(super) fn of(scene: &Scene) -> Result<Self, Error> {
+        let constants: Vec<Option<f64>> = scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
+        let uniform = constants[0].is_some() && constants.iter().all(|&c| c == constants[0]);
+        let contrast = if uniform { 1.0 } else { build::sampled_contrast(scene)? };
+        let mut effects = Vec::new();
+        let mut note = |present: bool, effect: Effect| {
+            if present {
+                effects.push(effect);
+            }
+        };
+        note(!uniform && scene.regions.len() > 1, Effect::DiffusivityJump { contrast });
+        note(constants.iter().any(Option::is_none), Effect::VariableDiffusivity);
+        note(scene.interfaces.iter().any(|i| nonzero(i.jump.as_ref())), Effect::ValueJump);
+        note(scene.interfaces.iter().any(|i| nonzero(i.flux_jump.as_ref())), Effect::FluxJump);
+        note(scene.regions.iter().any(|r| nonzero(r.source.as_ref())), Effect::Source);
+        let any = |test: fn(&ConditionSpec) -> bool| scene.boundaries.iter().any(|b| test(&b.condition));
+        note(any(|c| matches!(c, ConditionSpec::Neumann(_))), Effect::Neumann);
+        note(any(|c| matches!(c, ConditionSpec::Flux(_))), Effect::Flux);
+        note(any(|c| matches!(c, ConditionSpec::Robin { .. })), Effect::Robin);
+        note(!any(|c| matches!(c, ConditionSpec::Dirichlet(_) | ConditionSpec::Robin { .. })), Effect::PureNeumann);
+        note(!scene.holes.is_empty(), Effect::Holes);
+        note(build::is_curved(scene), Effect::CurvedBoundary);
+        note(scene.points.spacing.expr.as_constant().is_none(), Effect::GradedCloud);
+        Ok(Self { effects, uniform, contrast })
+    }
+
+    pub(super) fn has(&self, test: fn(&Effect) -> bool) -> bool {
+        self.effects.iter().any(test)
+    }
+
+    /// Whether anything happens at an interface at all.
+    pub(super) fn has_interface(&self) -> bool {
+        self.has(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump))
+    }
+}
+
+/// Whether a field is given and is not the constant zero.
+pub(super) fn nonzero(field: Option<&ExprField>) -> bool {
+    field.is_some_and(|f| f.expr.as_constant() != Some(0.0))
+}

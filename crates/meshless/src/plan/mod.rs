@@ -1,0 +1,124 @@
+//! The plan: what a scene calls for and how it will be solved, as plain data.
+//!
+//! A plan is made by a pure function of the scene, [`Plan::new`]; it builds no cloud and solves nothing. Execution does
+//! what the plan says and nothing else, so what a plan skips costs nothing.
+
+mod choose;
+mod effects;
+mod predict;
+mod show;
+
+use meshless_interfaces::gfdm::GfdmParams;
+use meshless_sparse::SolverParams;
+
+use crate::Error;
+use crate::scene::{MethodName, Scene};
+
+pub use effects::Effect;
+pub use predict::Predicted;
+
+/// What will be done, in order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Dimension of the scene.
+    pub dimension: usize,
+    /// What the scene calls for.
+    pub effects: Vec<Effect>,
+    /// The spatial method.
+    pub method: MethodPlan,
+    /// The linear solver.
+    pub solver: SolverParams,
+    /// The stages that will run.
+    pub stages: Vec<Stage>,
+    /// What will not run, and why.
+    pub skipped: Vec<Skipped>,
+    /// What it is expected to take.
+    pub predicted: Predicted,
+}
+
+/// The spatial method and its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MethodPlan {
+    /// Its name in the scene; never `auto`.
+    pub name: MethodName,
+    /// Why it was taken.
+    pub why: String,
+    /// Interaction radius in units of the spacing.
+    pub support: f64,
+    /// Parameters of the generalised finite difference methods.
+    pub gfdm: GfdmParams,
+}
+
+/// A step of the execution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Generate the cloud.
+    Points,
+    /// Find the supports.
+    Neighbors,
+    /// Find the region of every node.
+    Regions,
+    /// Evaluate the diffusivity at the nodes.
+    Diffusivity,
+    /// Evaluate the source at the nodes.
+    Source,
+    /// Least-squares stencils of the Laplacian, times a constant.
+    LaplacianStencils,
+    /// Least-squares stencils of `div(eta grad u)`, with a gradient of eta.
+    DiffusionStencils,
+    /// Find the nodes whose rows must be conservative.
+    NodeSelection,
+    /// Voronoi cells of the conservative nodes, and balances over them.
+    Cells,
+    /// Put the rows together and eliminate prescribed values.
+    Assembly,
+    /// Find floating stiff regions and split off their constants.
+    FloatingConstants,
+    /// Solve the linear system.
+    Solve,
+    /// The gradient at the nodes.
+    Gradient,
+    /// Errors against the exact solution.
+    Errors,
+    /// Values at the probes.
+    Probes,
+    /// Solve on a coarser cloud to estimate the error.
+    Estimate,
+    /// Write the fields for ParaView.
+    Vtu,
+    /// Draw the solution.
+    Plot,
+}
+
+/// Something that will not run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Skipped {
+    /// What.
+    pub what: &'static str,
+    /// Why.
+    pub why: &'static str,
+}
+
+impl Plan {
+    /// Works out the plan of a scene.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let survey = effects::Survey::of(scene)?;
+        let method = choose::method(scene, &survey)?;
+        let predicted = predict::predict(scene, &survey, &method)?;
+        let solver = choose::solver(scene, predicted.unknowns);
+        let (stages, skipped) = choose::stages(scene, &survey, &method);
+        Ok(Self { dimension: scene.dimension, effects: survey.effects, method, solver, stages, skipped, predicted })
+    }
+
+    /// Whether a stage will run.
+    pub fn runs(&self, stage: Stage) -> bool {
+        self.stages.contains(&stage)
+    }
+
+    /// The same plan without what a coarser companion solve does not need.
+    pub(crate) fn companion(&self) -> Self {
+        let mut plan = self.clone();
+        plan.stages.retain(|s| !matches!(s, Stage::Gradient | Stage::Errors | Stage::Probes | Stage::Estimate | Stage::Vtu | Stage::Plot));
+        plan
+    }
+}

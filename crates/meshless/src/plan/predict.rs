@@ -1,0 +1,65 @@
+//! What a plan is expected to take.
+
+use meshless_interfaces::gfdm::Selection;
+
+use super::MethodPlan;
+use super::effects::Survey;
+use crate::Error;
+use crate::build;
+use crate::scene::Scene;
+
+/// Expected cost of a plan, on one core like the one that the constants below were measured on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predicted {
+    /// Nodes.
+    pub unknowns: f64,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Memory in units of 1e6 bytes.
+    pub memory_mb: f64,
+}
+
+/// Microseconds a node, by dimension, for the parts of a solve.
+struct Rates {
+    points: f64,
+    neighbors: f64,
+    stencil: f64,
+    cell: f64,
+    /// Of the solve at 1e4 unknowns; it grows like `unknowns^SOLVE_GROWTH`.
+    solve: f64,
+    kilobytes: f64,
+}
+
+/// Measured with `cargo xtask bench` on one core.
+const RATES: [Rates; 3] = [
+    Rates { points: 0.5, neighbors: 0.5, stencil: 1.0, cell: 1.0, solve: 2.0, kilobytes: 1.0 },
+    Rates { points: 3.0, neighbors: 1.5, stencil: 4.0, cell: 4.0, solve: 20.0, kilobytes: 3.0 },
+    Rates { points: 10.0, neighbors: 6.0, stencil: 15.0, cell: 30.0, solve: 60.0, kilobytes: 6.0 },
+];
+
+/// Exponent by which the time of a solve exceeds its unknowns.
+const SOLVE_GROWTH: f64 = 0.3;
+
+/// Memory of the program itself, in units of 1e6 bytes.
+const BASE_MEMORY_MB: f64 = 10.0;
+
+pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Result<Predicted, Error> {
+    let unknowns = build::estimated_nodes(scene)?;
+    let rates = &RATES[scene.dimension - 1];
+    let stencils = if method.gfdm.selection == Selection::All { 0.0 } else { rates.stencil };
+    let cells = match method.gfdm.selection {
+        Selection::All => rates.cell,
+        Selection::None => 0.0,
+        _ if survey.has_interface() => 0.2 * rates.cell,
+        _ => 0.0,
+    };
+    let solve = rates.solve * (unknowns / 1e4).max(1.0).powf(SOLVE_GROWTH);
+    let microseconds = rates.points + rates.neighbors + stencils + cells + solve;
+    // The estimate solves again with half as many nodes in every direction.
+    let with_estimate = 1.0 + 0.5_f64.powi(scene.dimension as i32);
+    Ok(Predicted {
+        unknowns,
+        seconds: 1e-6 * microseconds * unknowns * with_estimate,
+        memory_mb: BASE_MEMORY_MB + rates.kilobytes * unknowns / 1e3,
+    })
+}

@@ -1,0 +1,52 @@
+//! A plan in words.
+
+use std::fmt;
+
+use super::{Plan, Stage};
+
+impl Stage {
+    /// The name used in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Neighbors => "neighbour lists",
+            Self::Regions => "regions",
+            Self::Diffusivity => "nodal diffusivity",
+            Self::Source => "source",
+            Self::LaplacianStencils => "Laplacian stencils",
+            Self::DiffusionStencils => "diffusion stencils",
+            Self::NodeSelection => "node selection",
+            Self::Cells => "Voronoi cells",
+            Self::Assembly => "assembly",
+            Self::FloatingConstants => "floating constants",
+            Self::Solve => "solve",
+            Self::Gradient => "gradient",
+            Self::Errors => "errors",
+            Self::Probes => "probes",
+            Self::Estimate => "error estimate",
+            Self::Vtu => "vtu output",
+            Self::Plot => "plot",
+        }
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "dimension   {}", self.dimension)?;
+        let effects: Vec<String> = self.effects.iter().map(ToString::to_string).collect();
+        writeln!(f, "effects     {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") })?;
+        writeln!(f, "method      {} ({})", self.method.name.as_str(), self.method.why)?;
+        writeln!(f, "solver      {}", self.solver.name())?;
+        let stages: Vec<&str> = self.stages.iter().map(|s| s.name()).collect();
+        writeln!(f, "stages      {}", stages.join(" -> "))?;
+        for skipped in &self.skipped {
+            writeln!(f, "skipped     {}: {}", skipped.what, skipped.why)?;
+        }
+        let p = &self.predicted;
+        write!(
+            f,
+            "predicted   {:.0} unknowns, {:.2} s on one core, {:.0} MB",
+            p.unknowns, p.seconds, p.memory_mb
+        )
+    }
+}

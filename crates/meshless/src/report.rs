@@ -1,0 +1,165 @@
+//! The report of a solve: what the command prints as JSON (field names are a contract).
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// Everything about a solve but the field itself.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Title of the scene.
+    pub title: String,
+    /// 1, 2 or 3.
+    pub dimension: usize,
+    /// Nodes whose value was solved for.
+    pub unknowns: usize,
+    /// Typical distance of nodes (the least one for graded clouds).
+    pub spacing: f64,
+    /// Name of the method.
+    pub method: String,
+    /// Order of the method: the polynomial degree that its stencils reproduce.
+    pub order: usize,
+    /// Largest diffusivity of a node over the smallest.
+    pub contrast: f64,
+    /// What the scene calls for.
+    pub effects: Vec<String>,
+    /// What it does not call for, and so was not built.
+    pub skipped: Vec<String>,
+    /// Errors against the exact solution, where the scene has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Errors>,
+    /// Errors estimated without it.
+    pub estimate: Estimate,
+    /// Smallest and largest value.
+    pub extrema: Extrema,
+    /// How the linear system was solved.
+    pub solver: SolverReport,
+    /// How nodes were treated.
+    pub nodes: NodeReport,
+    /// Properties of the matrix.
+    pub matrix: MatrixSummary,
+    /// Wall-clock seconds of the stages.
+    pub seconds: Seconds,
+    /// Largest memory of the process so far, in units of 1e6 bytes; 0 where the system does not tell.
+    pub peak_memory_mb: f64,
+    /// Values at the probes.
+    pub probes: Vec<Probe>,
+}
+
+/// Relative norms of the error; definitions in [`crate::norms`].
+#[derive(Debug, Clone, Serialize)]
+pub struct Errors {
+    /// Relative L2 norm.
+    pub l2: f64,
+    /// Relative maximum norm.
+    pub linf: f64,
+    /// Relative maximum norm of the gradient, each node in its own region.
+    pub gradient_linf: f64,
+    /// The same over each region alone, relative to the exact solution there.
+    pub regions: BTreeMap<String, RegionErrors>,
+}
+
+/// Norms over one region.
+#[derive(Debug, Clone, Serialize)]
+pub struct RegionErrors {
+    /// Relative L2 norm.
+    pub l2: f64,
+    /// Relative maximum norm.
+    pub linf: f64,
+}
+
+/// Error estimated by comparison with a coarser cloud.
+#[derive(Debug, Clone, Serialize)]
+pub struct Estimate {
+    /// Relative L2 norm; absent where the coarser cloud cannot be solved on.
+    pub l2: Option<f64>,
+    /// Why there is no estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_not: Option<String>,
+}
+
+/// Smallest and largest nodal value.
+#[derive(Debug, Clone, Serialize)]
+pub struct Extrema {
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// How the linear system was solved.
+#[derive(Debug, Clone, Serialize)]
+pub struct SolverReport {
+    /// Name of the solver with its preconditioner.
+    pub name: String,
+    /// Iterations; 0 for a direct solve.
+    pub iterations: usize,
+    /// Relative true residual.
+    pub residual: f64,
+    /// Componentwise backward error.
+    pub backward_error: f64,
+    /// Constants of floating stiff regions that were solved for beside the nodes.
+    pub floating_constants: usize,
+}
+
+/// How many nodes were treated in which way.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct NodeReport {
+    /// Prescribed values.
+    pub dirichlet: usize,
+    /// Least-squares stencils for the equation.
+    pub strong: usize,
+    /// Least-squares stencils for boundary conditions.
+    pub strong_boundary: usize,
+    /// Balances over Voronoi cells.
+    pub conservative: usize,
+    /// Nodes whose strong row is not diagonally dominant.
+    pub flagged: usize,
+    /// Stencils that needed a larger support than the one given.
+    pub enlarged: usize,
+}
+
+/// Properties of the matrix that the discrete maximum principle and conservation rest on.
+#[derive(Debug, Clone, Serialize)]
+pub struct MatrixSummary {
+    /// Largest off-diagonal entry of the wrong sign over the diagonal of its row; 0 for an M-matrix.
+    pub wrong_sign: f64,
+    /// Largest sum of a row that should vanish, over its diagonal.
+    pub row_sum: f64,
+    /// Largest sum of a column of interior conservative nodes, over its diagonal: the discrete divergence theorem.
+    pub column_sum: f64,
+    /// How far u leaves the range of the prescribed values, relative to that range; only where there is no source and
+    /// no prescribed flux, so that the maximum principle holds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overshoot: Option<f64>,
+}
+
+/// Wall-clock seconds.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Seconds {
+    /// Generation of the cloud.
+    pub points: f64,
+    /// Neighbour lists, and who is next to whom.
+    pub neighbors: f64,
+    /// Coefficients, stencils, cells.
+    pub stencils: f64,
+    /// Assembly of the matrix.
+    pub assembly: f64,
+    /// Solution of the linear system.
+    pub solve: f64,
+    /// Gradient, errors, probes.
+    pub post: f64,
+    /// The error estimate.
+    pub estimate: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+/// A value asked for.
+#[derive(Debug, Clone, Serialize)]
+pub struct Probe {
+    /// Where.
+    pub at: Vec<f64>,
+    /// The value; absent where the point lies outside of the domain.
+    pub value: Option<f64>,
+}

@@ -1,0 +1,112 @@
+//! What a scene does not call for is not built.
+
+use meshless::interfaces::RowKind;
+use meshless::plan::{Effect, Plan, Stage};
+use meshless::scene::{MethodName, Scene};
+use meshless::{Silent, execute};
+use meshless_tests::small::Small;
+
+fn plan(small: &Small) -> Plan {
+    let scene = Scene::parse(&small.text(), "small.toml").unwrap();
+    Plan::new(&scene).unwrap()
+}
+
+#[test]
+fn a_plain_poisson_scene_has_nothing_but_stencils() {
+    let plan = plan(&Small::default());
+    assert_eq!(plan.effects, []);
+    assert_eq!(plan.method.name, MethodName::GfdmClassical);
+    assert_eq!(
+        plan.stages,
+        [
+            Stage::Points,
+            Stage::Neighbors,
+            Stage::LaplacianStencils,
+            Stage::Assembly,
+            Stage::Solve,
+            Stage::Estimate
+        ]
+    );
+}
+
+#[test]
+fn every_effect_adds_its_own_stages_and_no_others() {
+    let base = plan(&Small::default());
+    let added = |small: Small| {
+        let plan = plan(&small);
+        plan.stages.into_iter().filter(|s| !base.stages.contains(s)).collect::<Vec<_>>()
+    };
+    assert_eq!(added(Small { source: Some("1"), ..Small::default() }), [Stage::Source]);
+    assert_eq!(added(Small { source: Some("0"), ..Small::default() }), []);
+    assert_eq!(added(Small { outside: "1 + x", ..Small::default() }), [Stage::Diffusivity, Stage::DiffusionStencils]);
+    assert_eq!(added(Small { extra: "[[probes]]\nat = [0.5, 0.5]\n\n", ..Small::default() }), [Stage::Probes]);
+    assert_eq!(added(Small { extra: "[output]\nplot = true\n\n", ..Small::default() }), [Stage::Plot]);
+    assert_eq!(
+        added(Small { extra: "[output]\nvtu = true\n\n", ..Small::default() }),
+        [Stage::Gradient, Stage::Vtu]
+    );
+    assert_eq!(
+        added(Small { inside: Some("5"), ..Small::default() }),
+        [Stage::Regions, Stage::Diffusivity, Stage::DiffusionStencils, Stage::NodeSelection, Stage::Cells]
+    );
+    assert_eq!(
+        added(Small { inside: Some("1e6"), ..Small::default() }),
+        [
+            Stage::Regions,
+            Stage::Diffusivity,
+            Stage::DiffusionStencils,
+            Stage::NodeSelection,
+            Stage::Cells,
+            Stage::FloatingConstants
+        ]
+    );
+}
+
+#[test]
+fn two_regions_of_one_material_are_no_interface() {
+    let plan = plan(&Small { inside: Some("1"), ..Small::default() });
+    assert!(plan.effects.is_empty());
+    assert!(plan.runs(Stage::LaplacianStencils));
+    assert!(!plan.runs(Stage::Cells) && !plan.runs(Stage::Diffusivity));
+}
+
+#[test]
+fn jumps_are_effects_and_call_for_cells() {
+    let extra = "[[interfaces]]\nbetween = [\"inside\", \"outside\"]\nflux_jump = \"1\"\n\n";
+    let plan = plan(&Small { inside: Some("1"), extra, ..Small::default() });
+    assert_eq!(plan.effects, [Effect::FluxJump]);
+    assert_eq!(plan.method.name, MethodName::GfdmHybrid);
+    assert!(plan.runs(Stage::Cells));
+}
+
+#[test]
+fn skipped_stages_have_reasons_and_are_not_also_run() {
+    for small in [Small::default(), Small { inside: Some("7"), source: Some("x"), ..Small::default() }] {
+        let plan = plan(&small);
+        for skipped in &plan.skipped {
+            assert!(!skipped.why.is_empty(), "{}", skipped.what);
+            assert!(plan.stages.iter().all(|s| s.name() != skipped.what), "{}", skipped.what);
+        }
+    }
+}
+
+#[test]
+fn execution_builds_no_cell_where_the_plan_has_none() {
+    let scene = Scene::parse(&Small::default().text(), "small.toml").unwrap();
+    let solution = execute(&scene, &Plan::new(&scene).unwrap(), &mut Silent).unwrap();
+    assert_eq!(solution.report.nodes.conservative, 0);
+    assert!(!solution.field.kind.contains(&RowKind::Conservative));
+    assert!(solution.field.gradient.is_none());
+}
+
+#[test]
+fn the_prediction_of_the_unknowns_is_close() {
+    for (dimension, spacing) in [(1, "0.01"), (2, "0.02"), (3, "0.08")] {
+        let small = Small { dimension, spacing, ..Small::default() };
+        let scene = Scene::parse(&small.text(), "small.toml").unwrap();
+        let plan = Plan::new(&scene).unwrap();
+        let solution = execute(&scene, &plan, &mut Silent).unwrap();
+        let ratio = plan.predicted.unknowns / solution.field.u.len() as f64;
+        assert!((0.85..1.18).contains(&ratio), "{dimension}-D: {ratio}");
+    }
+}
