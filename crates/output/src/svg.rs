@@ -66,8 +66,11 @@ impl Svg {
         self.lines([([from, to].as_slice(), false)].into_iter(), color, width, "");
     }
 
-    /// A line of text whose middle is at the height of the position, turned by a quarter if `upwards`.
+    /// A line of text whose middle is at the height of the position.
     pub(crate) fn text(&mut self, at: [f64; 2], text: &str, size: f64, anchor: Anchor, attributes: &str) {
+        if text.is_empty() {
+            return;
+        }
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",

@@ -14,37 +14,74 @@ pub(crate) fn linear_ticks(lo: f64, hi: f64, target: usize) -> (Vec<f64>, f64) {
     let mantissa = raw / power;
     let step =
         power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| mantissa <= m * (1.0 + 1e-9)).unwrap_or(10.0);
+    (multiples(lo, hi, step), step)
+}
+
+/// The multiple of a power of ten, of 1, 2, 2.5 or 5, that divides a span into nearest to `count` parts.
+pub(crate) fn step_for(span: f64, count: usize) -> f64 {
+    let raw = span / count.max(1) as f64;
+    let power = 10_f64.powf(raw.log10().floor());
+    let distance = |m: &f64| (raw / (m * power)).ln().abs();
+    let mantissas = [1.0, 2.0, 2.5, 5.0, 10.0];
+    power * mantissas.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1.0)
+}
+
+/// The multiples of `step` between `lo` and `hi`.
+pub(crate) fn multiples(lo: f64, hi: f64, step: f64) -> Vec<f64> {
     let first = (lo / step - EDGE_TOLERANCE).ceil();
     let last = (hi / step + EDGE_TOLERANCE).floor();
-    let count = (last - first).clamp(0.0, 1000.0) as usize;
+    let count = (last - first).clamp(-1.0, 1000.0);
     // Dividing by a whole number gives 0.3 where multiplying by 0.1 gives 0.30000000000000004.
-    let inverse = (1.0 / step).round();
+    let inverse = 1.0 / step;
+    let whole = inverse.is_finite() && (inverse - inverse.round()).abs() < 1e-9 * inverse;
     let tick = |k: usize| {
         let n = first + k as f64;
-        if step < 1.0 && inverse.is_finite() { n / inverse } else { n * step }
+        if step < 1.0 && whole { n / inverse.round() } else { n * step }
     };
-    ((0..=count).map(tick).collect(), step)
+    (0..(count + 1.0) as usize).map(tick).collect()
 }
 
-/// A number as a tick label, with the decimals that a step between ticks calls for; very large and very small numbers
-/// as a mantissa and a power of ten.
-pub(crate) fn label(value: f64, step: f64) -> String {
-    if value == 0.0 || (step > 0.0 && value.abs() < 1e-9 * step) {
+/// What is written at the ticks of a linear axis, and the factor that they have in common.
+pub(crate) struct Labels {
+    pub(crate) texts: Vec<String>,
+    /// `×10⁻⁷`, to be written once beside the axis; empty if the numbers are of ordinary size.
+    pub(crate) factor: String,
+}
+
+/// Labels of ticks that lie `step` apart, with the decimals that they need. Very large and very small numbers are
+/// written without their power of ten, which is the common factor.
+pub(crate) fn labels(ticks: &[f64], step: f64) -> Labels {
+    let largest = ticks.iter().fold(step.abs(), |m, t| m.max(t.abs()));
+    if largest == 0.0 || (1e-3..1e5).contains(&largest) {
+        return Labels { texts: ticks.iter().map(|&t| plain(t, step)).collect(), factor: String::new() };
+    }
+    let exponent = largest.log10().floor() as i32;
+    let scale = 10_f64.powi(exponent);
+    let texts = ticks.iter().map(|&t| plain(t / scale, step / scale)).collect();
+    Labels { texts, factor: format!("×{}", power_of_ten(exponent)) }
+}
+
+/// A single number with up to four digits.
+pub(crate) fn label(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        return plain(value, 0.0);
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    format!("{}×{}", plain(value / 10_f64.powi(exponent), 0.0), power_of_ten(exponent))
+}
+
+/// A number with as many decimals as a step needs, or four digits if there is no step, and a real minus sign.
+fn plain(value: f64, step: f64) -> String {
+    if value == 0.0 || value.abs() < 1e-9 * step {
         return "0".to_owned();
     }
-    let size = value.abs().max(step.abs());
-    if !(1e-3..1e5).contains(&size) {
-        let exponent = value.abs().log10().floor() as i32;
-        let scale = 10_f64.powi(exponent);
-        let mantissa = plain(value / scale, if step > 0.0 { step / scale } else { 0.01 });
-        return format!("{mantissa}×10{}", superscript(exponent));
+    if step <= 0.0 {
+        let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 15.0) as usize;
+        let digits = format!("{value:.decimals$}");
+        let short = if decimals > 0 { digits.trim_end_matches('0').trim_end_matches('.') } else { &digits };
+        return minus(short);
     }
-    plain(value, if step > 0.0 { step } else { 0.001 * size })
-}
-
-/// A number with as many decimals as a step needs, and a real minus sign.
-fn plain(value: f64, step: f64) -> String {
-    let mut decimals = (-step.abs().log10().floor()).clamp(0.0, 15.0) as usize;
+    let mut decimals = (-step.log10().floor()).clamp(0.0, 15.0) as usize;
     // A step of 0.25 needs one digit more than its magnitude says.
     let digits = step * 10_f64.powi(decimals as i32);
     if (digits - digits.round()).abs() > 1e-6 {
@@ -143,13 +180,22 @@ mod tests {
     }
 
     #[test]
+    fn bands_come_near_the_number_asked_for() {
+        assert_eq!(step_for(4.5, 14), 0.25);
+        assert_eq!(step_for(1.0, 10), 0.1);
+        assert_eq!(multiples(-0.1, 0.8, 0.25), [0.0, 0.25, 0.5, 0.75]);
+        assert!(multiples(0.3, 0.4, 0.25).is_empty());
+    }
+
+    #[test]
     fn labels_are_short() {
-        assert_eq!(label(0.30000000000000004, 0.1), "0.3");
-        assert_eq!(label(-0.25, 0.25), "−0.25");
-        assert_eq!(label(1e-20, 0.1), "0");
-        assert_eq!(label(2.5e-7, 5e-8), "2.5×10⁻⁷");
-        assert_eq!(label(3e10, 1e10), "3×10¹⁰");
-        assert_eq!(label(1500.0, 500.0), "1500");
+        let texts = |ticks: &[f64], step| labels(ticks, step).texts;
+        assert_eq!(texts(&[0.30000000000000004, 1e-20, -2.0], 0.1), ["0.3", "0", "−2.0"]);
+        assert_eq!(texts(&[-0.25, 0.0], 0.25), ["−0.25", "0"]);
+        assert_eq!(texts(&[1500.0], 500.0), ["1500"]);
+        let small = labels(&[2.0e-7, 2.5e-7], 5e-8);
+        assert_eq!((small.texts, small.factor.as_str()), (vec!["2.0".into(), "2.5".into()], "×10⁻⁷"));
+        assert_eq!([3.0, -0.125, 3e10, 1.23456e-5].map(label), ["3", "−0.125", "3×10¹⁰", "1.235×10⁻⁵"]);
     }
 
     #[test]

@@ -35,6 +35,7 @@ const PALE: RGBColor = RGBColor(236, 236, 236);
 const GRID: RGBColor = RGBColor(212, 212, 212);
 const REFERENCE: RGBColor = RGBColor(110, 110, 110);
 
+type Pixel = (i32, i32);
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Axes = Cartesian2d<Range, Range>;
 type Context<'a> = ChartContext<'a, SVGBackend<'a>, Axes>;
@@ -104,7 +105,8 @@ impl Ranged for Range {
     type ValueType = f64;
 
     fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let fraction = (value - self.lo) / (self.hi - self.lo);
+        // What is far outside stays just outside: pixels are counted in 32 bits.
+        let fraction = ((value - self.lo) / (self.hi - self.lo)).clamp(-1.0, 2.0);
         limit.0 + (fraction * f64::from(limit.1 - limit.0)).round() as i32
     }
 
@@ -154,11 +156,17 @@ fn mesh(chart: &Chart, frame: &Frame, context: &mut Context) -> Result<(), Outpu
         .y_labels(frame.y.labelled.len() + 1)
         .label_style(font(TICK_SIZE))
         .axis_desc_style(font(LABEL_SIZE))
-        .x_desc(printable(&chart.x.label))
-        .y_desc(printable(&chart.y.label))
+        .x_desc(described(&chart.x.label, &frame.x))
+        .y_desc(described(&chart.y.label, &frame.y))
         .set_all_tick_mark_size(px(4.0))
         .draw()
         .map_err(failed)
+}
+
+/// An axis' label with the factor that its tick labels have in common.
+fn described(label: &str, range: &Range) -> String {
+    let text = if range.factor.is_empty() { label.to_owned() } else { format!("{label} ({})", range.factor) };
+    printable(&text)
 }
 
 fn references(frame: &Frame, context: &mut Context) -> Result<(), OutputError> {
@@ -244,7 +252,7 @@ fn outline(number: usize) -> Vec<(f64, f64)> {
 }
 
 /// A marker, as an area and its edge: filled in the first round through the palette, hollow in the second.
-fn marker(number: usize, size: f64) -> (Polygon<(i32, i32)>, PathElement<(i32, i32)>) {
+fn marker(number: usize, size: f64) -> (Polygon<Pixel>, PathElement<Pixel>) {
     let mut points: Vec<(i32, i32)> =
         outline(number).iter().map(|p| (px(size * p.0), px(size * p.1))).collect();
     let hollow = number / HUES.len() % 2 == 1;

@@ -1,7 +1,7 @@
 //! What a chart shows and where: visible points in axis coordinates, ranges, ticks, reference lines.
 
 use super::{Axis, Chart, Scale, Series};
-use crate::ticks::{label, linear_ticks, log_ticks, minus};
+use crate::ticks::{labels, linear_ticks, log_ticks, minus};
 
 /// Room beside the outermost points, as a fraction of the range.
 const MARGIN: f64 = 0.06;
@@ -24,6 +24,8 @@ pub(super) struct Range {
     pub(super) labelled: Vec<(f64, String)>,
     /// Ticks without.
     pub(super) minor: Vec<f64>,
+    /// Factor that all labels have in common, empty if none.
+    pub(super) factor: String,
 }
 
 /// A dashed line of a given order.
@@ -53,7 +55,7 @@ impl Frame {
         let mut references = Vec::new();
         if both_log && x_hi > x_lo {
             let orders = chart.reference_slopes.iter().copied().filter(|order| order.is_finite());
-            references = orders.map(|order| reference(order, &places, x_lo, x_hi)).collect();
+            references = orders.filter_map(|order| reference(order, &places, x_lo, x_hi)).collect();
             // Room for the flattest of them; a steep one may leave the chart.
             let lowest = references.iter().map(|r| r.from.1.min(r.to.1)).fold(f64::INFINITY, f64::min);
             y_lo = y_lo.min(lowest.max(y_lo - 0.35 * (y_hi - y_lo) - REFERENCE_GAP));
@@ -80,11 +82,13 @@ impl Reference {
     }
 }
 
-/// The line of the given order that passes below all points.
-fn reference(order: f64, places: &[Place], x_lo: f64, x_hi: f64) -> Reference {
+/// The line of the given order that passes below all points, none if it leaves the range of numbers.
+fn reference(order: f64, places: &[Place], x_lo: f64, x_hi: f64) -> Option<Reference> {
     let lowest = places.iter().map(|p| p.1 - order * p.0).fold(f64::INFINITY, f64::min) - REFERENCE_GAP;
     let at = |x: f64| (x, lowest + order * x);
-    Reference { from: at(x_lo), to: at(x_hi), label: format!("slope {}", minus(&order.to_string())) }
+    let (from, to) = (at(x_lo), at(x_hi));
+    let finite = from.1.is_finite() && to.1.is_finite();
+    finite.then(|| Reference { from, to, label: format!("slope {}", minus(&order.to_string())) })
 }
 
 fn visible_runs(series: &Series, chart: &Chart) -> Vec<Vec<Place>> {
@@ -125,16 +129,19 @@ fn range(axis: &Axis, lo: f64, hi: f64, target: usize) -> Range {
     match axis.scale {
         Scale::Linear => {
             let (ticks, step) = linear_ticks(lo, hi, target);
+            let labels = labels(&ticks, step);
+            let factor = labels.factor;
             Range {
                 lo,
                 hi,
-                labelled: ticks.into_iter().map(|t| (t, label(t, step))).collect(),
+                labelled: ticks.into_iter().zip(labels.texts).collect(),
                 minor: Vec::new(),
+                factor,
             }
         }
         Scale::Log => {
             let ticks = log_ticks(lo, hi, target);
-            Range { lo, hi, labelled: ticks.labelled, minor: ticks.minor }
+            Range { lo, hi, labelled: ticks.labelled, minor: ticks.minor, factor: String::new() }
         }
     }
 }

@@ -28,16 +28,30 @@ pub(super) fn mix2(a: [f64; 2], b: [f64; 2], t: f64) -> [f64; 2] {
     [mix(a[0], b[0], t), mix(a[1], b[1], t)]
 }
 
-/// Keeps the part of `polygon` where `height`, linear on its edges, is not positive.
-pub(super) fn clip<C: Corner>(polygon: &mut Vec<C>, scratch: &mut Vec<C>, height: impl Fn(&C) -> f64) {
+/// Which side corners of height zero belong to. What is left on both sides of a level adds up to the whole, even where
+/// an edge lies at the level, if they belong to one of the two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Zero {
+    Kept,
+    Cut,
+}
+
+/// Keeps the part of `polygon` where `height`, linear on its edges, is negative.
+pub(super) fn clip<C: Corner>(
+    polygon: &mut Vec<C>,
+    scratch: &mut Vec<C>,
+    zero: Zero,
+    height: impl Fn(&C) -> f64,
+) {
+    let kept = |h: f64| h < 0.0 || (h == 0.0 && zero == Zero::Kept);
     scratch.clear();
     for (k, corner) in polygon.iter().enumerate() {
         let after = &polygon[(k + 1) % polygon.len()];
         let (h, h_after) = (height(corner), height(after));
-        if h <= 0.0 {
+        if kept(h) {
             scratch.push(*corner);
         }
-        if (h <= 0.0) != (h_after <= 0.0) {
+        if kept(h) != kept(h_after) {
             scratch.push(crossing(corner, after, h, h_after));
         }
     }

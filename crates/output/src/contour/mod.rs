@@ -10,12 +10,13 @@ mod extend;
 mod lines;
 mod outline;
 mod pieces;
+mod trace;
 
 pub(crate) use lines::{Line, level_lines};
 pub(crate) use outline::Outline;
 pub(crate) use pieces::{Domain, Pieces};
 
-use clip::clip;
+use clip::{Zero, clip};
 
 /// A loop of points: counter-clockwise around an area, clockwise around a hole.
 pub(crate) type Loop = Vec<[f64; 2]>;
@@ -35,15 +36,15 @@ pub(crate) fn bands(pieces: &Pieces, levels: &[f64]) -> Vec<Vec<Loop>> {
         let (lo, hi) = range(piece);
         // Band k lies between levels k-1 and k; a level itself belongs to the band above.
         let first = levels.partition_point(|&level| level <= lo);
-        let last = levels.partition_point(|&level| level < hi).max(first);
+        let last = levels.partition_point(|&level| level <= hi);
         for band in first..=last {
             part.clear();
             part.extend_from_slice(piece);
             if band > first {
-                clip(&mut part, &mut scratch, |v| levels[band - 1] - v.value);
+                clip(&mut part, &mut scratch, Zero::Kept, |v| levels[band - 1] - v.value);
             }
             if band < last {
-                clip(&mut part, &mut scratch, |v| v.value - levels[band]);
+                clip(&mut part, &mut scratch, Zero::Cut, |v| v.value - levels[band]);
             }
             outlines[band].add(part.iter().map(|v| v.at));
         }

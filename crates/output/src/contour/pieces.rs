@@ -1,7 +1,7 @@
 //! The convex pieces that a grid is cut into.
 
 use super::Vertex;
-use super::clip::{Corner, clip, mix, mix2};
+use super::clip::{Corner, Zero, clip, mix, mix2};
 use super::extend::extend;
 
 /// A field on a grid: where it is known, in which region, and where it ends.
@@ -146,7 +146,7 @@ impl Cutter<'_> {
         for level in self.domain.interfaces {
             for sign in [1.0, -1.0] {
                 let side = numbers.map(|k| sign * level[k]);
-                if (0..4).all(|c| !(own(c) && !(side[c] <= 0.0)) && !(other(c) && !(side[c] >= 0.0))) {
+                if (0..4).all(|c| (!own(c) || side[c] <= 0.0) && (!other(c) || side[c] >= 0.0)) {
                     return side;
                 }
             }
@@ -183,8 +183,8 @@ impl Cutter<'_> {
     fn triangle(&mut self, corners: impl Iterator<Item = Sided>, pieces: &mut Pieces) {
         self.polygon.clear();
         self.polygon.extend(corners);
-        clip(&mut self.polygon, &mut self.scratch, |c| c.side);
-        clip(&mut self.polygon, &mut self.scratch, |c| c.outside);
+        clip(&mut self.polygon, &mut self.scratch, Zero::Kept, |c| c.side);
+        clip(&mut self.polygon, &mut self.scratch, Zero::Kept, |c| c.outside);
         if self.polygon.len() > 2 {
             pieces.push(self.polygon.iter().map(|c| Vertex { at: c.at, value: c.value }));
         }

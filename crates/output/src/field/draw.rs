@@ -103,15 +103,15 @@ fn color_bar(levels: &Levels, frame: &Frame, svg: &mut Svg) {
     let [right, bottom] = [left + BAR_WIDTH, top + height];
     let border = [[left, top], [right, top], [right, bottom], [left, bottom]];
     svg.lines([(border.as_slice(), true)].into_iter(), INK, 0.8, "");
-    // A constant field has its only value beside the middle.
-    let labelled = if levels.inner.is_empty() { vec![levels.lo] } else { levels.inner.clone() };
-    let apart = (y(levels.lo) - y(levels.hi)) / labelled.len() as f64;
-    let stride = (BAR_LABELS / apart.max(1e-3)).ceil().max(1.0) as usize;
-    for &level in labelled.iter().step_by(stride) {
-        let at = y(level);
+    let (labelled, factor) = levels.labels();
+    let apart = (bottom - top) / labelled.len() as f64;
+    let stride = (BAR_LABELS / apart).ceil().max(1.0) as usize;
+    for (level, text) in labelled.iter().step_by(stride) {
+        let at = y(*level);
         svg.line([right, at], [right + 4.0, at], INK, 0.8);
-        svg.text([right + 8.0, at], &levels.label(level), TICK_SIZE, Anchor::Start, "");
+        svg.text([right + 8.0, at], text, TICK_SIZE, Anchor::Start, "");
     }
+    svg.text([left, top - 9.0], &factor, TICK_SIZE, Anchor::Start, "");
 }
 
 fn nodes(picture: &FieldPicture, frame: &Frame, svg: &mut Svg) {

@@ -2,7 +2,7 @@
 
 use super::FieldPicture;
 use crate::svg::{Anchor, Svg};
-use crate::ticks::{label, linear_ticks};
+use crate::ticks::{labels, linear_ticks};
 
 pub(super) const TITLE_SIZE: f64 = 15.0;
 pub(super) const TICK_SIZE: f64 = 12.0;
@@ -86,19 +86,21 @@ impl Frame {
         let border = [[left, top], [right, top], [right, bottom], [left, bottom]];
         svg.lines([(border.as_slice(), true)].into_iter(), INK, 0.8, "");
         let (ticks, step) = linear_ticks(picture.min[0], picture.max[0], ((width / 80.0) as usize).max(1));
-        for tick in ticks {
+        let texts = labels(&ticks, step);
+        for (tick, text) in ticks.into_iter().zip(texts.texts) {
             let [x, _] = self.place([tick, picture.min[1]]);
             svg.line([x, bottom], [x, bottom + 5.0], INK, 0.8);
-            svg.text([x, bottom + 15.0], &label(tick, step), TICK_SIZE, Anchor::Middle, "");
+            svg.text([x, bottom + 15.0], &text, TICK_SIZE, Anchor::Middle, "");
         }
+        svg.text([right, bottom + 29.0], &texts.factor, TICK_SIZE, Anchor::End, "");
         let (ticks, step) = linear_ticks(picture.min[1], picture.max[1], ((height / 60.0) as usize).max(1));
-        for tick in ticks {
+        let texts = labels(&ticks, step);
+        for (tick, text) in ticks.into_iter().zip(texts.texts) {
             let [_, y] = self.place([picture.min[0], tick]);
             svg.line([left - 5.0, y], [left, y], INK, 0.8);
-            svg.text([left - 9.0, y], &label(tick, step), TICK_SIZE, Anchor::End, "");
+            svg.text([left - 9.0, y], &text, TICK_SIZE, Anchor::End, "");
         }
-        if !picture.title.is_empty() {
-            svg.text([left + 0.5 * width, 18.0], &picture.title, TITLE_SIZE, Anchor::Middle, "");
-        }
+        svg.text([left, top - 9.0], &texts.factor, TICK_SIZE, Anchor::Start, "");
+        svg.text([left + 0.5 * width, 18.0], &picture.title, TITLE_SIZE, Anchor::Middle, "");
     }
 }

@@ -1,6 +1,6 @@
 //! Which levels bound the bands, and what they are called.
 
-use crate::ticks::{label, linear_ticks, power_of_ten};
+use crate::ticks::{label, labels, multiples, power_of_ten, step_for};
 
 /// A logarithmic picture shows no more than this many decades below the largest value: what lies below is round-off.
 const DECADES: f64 = 16.0;
@@ -27,7 +27,8 @@ impl Levels {
         let (mut inner, mut step) = (Vec::new(), 0.0);
         // A field that varies by round-off only is constant.
         if hi - lo > 1e-12 * lo.abs().max(hi.abs()) && (hi - lo).is_finite() {
-            (inner, step) = linear_ticks(lo, hi, count.clamp(1, 100));
+            step = step_for(hi - lo, count.clamp(1, 100));
+            inner = multiples(lo, hi, step);
             inner.retain(|&level| level > lo && level < hi);
         }
         Some(Self { lo, hi, inner, step, log })
@@ -38,16 +39,25 @@ impl Levels {
         self.inner.len() + 1
     }
 
-    /// What is written beside a level on the colour bar.
-    pub(super) fn label(&self, level: f64) -> String {
-        if !self.log {
-            label(level, self.step)
-        } else if self.step >= 1.0 {
-            power_of_ten(level.round() as i32)
-        } else {
-            let value = 10_f64.powf(level);
-            label(value, 0.1 * 10_f64.powf(level.floor()))
+    /// The labels of the colour bar, `(level, text)`, and their common factor. A constant field has one label; a
+    /// logarithmic scale has labels at the decades if there are several.
+    pub(super) fn labels(&self) -> (Vec<(f64, String)>, String) {
+        let shown = |value: f64| if self.log { 10_f64.powf(value) } else { value };
+        if self.inner.is_empty() {
+            return (vec![(self.lo, label(shown(self.lo)))], String::new());
         }
+        if !self.log {
+            let labels = labels(&self.inner, self.step);
+            return (self.inner.iter().copied().zip(labels.texts).collect(), labels.factor);
+        }
+        let whole = |level: &f64| (level - level.round()).abs() < 1e-9;
+        let decades: Vec<f64> = self.inner.iter().copied().filter(whole).collect();
+        let labelled = if decades.len() > 1 {
+            decades.into_iter().map(|level| (level, power_of_ten(level.round() as i32))).collect()
+        } else {
+            self.inner.iter().map(|&level| (level, label(shown(level)))).collect()
+        };
+        (labelled, String::new())
     }
 }
 
