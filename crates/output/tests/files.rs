@@ -6,7 +6,9 @@ use meshless_output::{OutputError, VtuField, VtuValues, write_text_atomically, w
 use vtkio::model::{Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, Vtk};
 
 fn read(path: &std::path::Path) -> UnstructuredGridPiece {
-    let DataSet::UnstructuredGrid { mut pieces, .. } = Vtk::import(path).unwrap().data else {
+    let DataSet::UnstructuredGrid { mut pieces, .. } =
+        Vtk::import(path).expect("a file that vtkio reads").data
+    else {
         panic!("not an unstructured grid");
     };
     match pieces.remove(0) {

@@ -31,26 +31,31 @@ impl Pieces {
     /// continued on its own up to the interface.
     pub(crate) fn new(domain: &Domain) -> Self {
         let mut pieces = Self::default();
-        let mut regions: Vec<u16> = domain.labels.unwrap_or_default().to_vec();
-        regions.sort_unstable();
-        regions.dedup();
-        if domain.labels.is_none() {
-            regions.push(0);
-        }
-        for region in regions {
-            let own: Vec<f64> = (0..domain.values.len())
-                .map(|k| if domain.region(k) == Some(region) { domain.values[k] } else { f64::NAN })
-                .collect();
-            let continued = extend(&own, domain.nx, domain.ny);
-            let mut cutter =
-                Cutter { domain, region, continued: &continued, polygon: Vec::new(), scratch: Vec::new() };
-            for j in 0..domain.ny - 1 {
-                for i in 0..domain.nx - 1 {
-                    cutter.cell(i, j, &mut pieces);
-                }
-            }
+        for region in domain.regions() {
+            pieces.add_region(domain, region);
         }
         pieces
+    }
+
+    /// The pieces of one region.
+    pub(crate) fn of_region(domain: &Domain, region: u16) -> Self {
+        let mut pieces = Self::default();
+        pieces.add_region(domain, region);
+        pieces
+    }
+
+    fn add_region(&mut self, domain: &Domain, region: u16) {
+        let own: Vec<f64> = (0..domain.values.len())
+            .map(|k| if domain.region(k) == Some(region) { domain.values[k] } else { f64::NAN })
+            .collect();
+        let continued = extend(&own, domain.nx, domain.ny);
+        let mut cutter =
+            Cutter { domain, region, continued: &continued, polygon: Vec::new(), scratch: Vec::new() };
+        for j in 0..domain.ny - 1 {
+            for i in 0..domain.nx - 1 {
+                cutter.cell(i, j, self);
+            }
+        }
     }
 
     /// The corners of each piece, counter-clockwise.
@@ -69,6 +74,14 @@ impl Domain<'_> {
     /// Whether the field is known at a grid node.
     pub(crate) fn contains(&self, k: usize) -> bool {
         self.region(k).is_some()
+    }
+
+    /// The regions that occur, ascending.
+    pub(crate) fn regions(&self) -> Vec<u16> {
+        let mut regions: Vec<u16> = (0..self.values.len()).filter_map(|k| self.region(k)).collect();
+        regions.sort_unstable();
+        regions.dedup();
+        regions
     }
 
     /// Region of a grid node, none where the field is unknown.

@@ -107,7 +107,7 @@ fn the_mean_decides_at_a_saddle() {
 
 #[test]
 fn holes_are_loops_of_their_own() {
-    let values = sample(31, |x, y| x.hypot(y));
+    let values = sample(31, f64::hypot);
     let rings = bands(&Pieces::new(&square(31, &values)), &[0.3, 0.6]);
     assert_eq!(rings.iter().map(Vec::len).collect::<Vec<_>>(), [1, 2, 2]);
     let total: f64 = rings.iter().map(|loops| area(loops)).sum();

@@ -47,7 +47,7 @@ fn draw_lines(lines: &[Line], color: &str, width: f64, attributes: &str, frame: 
     svg.lines(placed.iter().map(|(points, closed)| (points.as_slice(), *closed)), color, width, attributes);
 }
 
-/// Bands, contour lines and the outline of the domain.
+/// Bands, contour lines and the outline of the domain, or of each region if their interfaces are not given.
 fn fill(domain: &Domain, levels: &Levels, frame: &Frame, svg: &mut Svg) {
     let pieces = Pieces::new(domain);
     for (band, loops) in bands(&pieces, &levels.inner).iter().enumerate() {
@@ -57,6 +57,17 @@ fn fill(domain: &Domain, levels: &Levels, frame: &Frame, svg: &mut Svg) {
     for &level in &levels.inner {
         draw_lines(&level_lines(&pieces, level), "#000", 0.6, CONTOUR, frame, svg);
     }
+    if domain.interfaces.is_empty() {
+        // The regions' borders are all that shows where they meet.
+        for region in domain.regions() {
+            draw_outline(&Pieces::of_region(domain, region), frame, svg);
+        }
+    } else {
+        draw_outline(&pieces, frame, svg);
+    }
+}
+
+fn draw_outline(pieces: &Pieces, frame: &Frame, svg: &mut Svg) {
     let mut outline = Outline::default();
     for piece in pieces.iter() {
         outline.add(piece.iter().map(|v| v.at));

@@ -33,7 +33,8 @@ pub struct FieldPicture {
     pub ny: usize,
     /// Value at each grid node; not a number where there is none, outside the domain for example.
     pub values: Vec<f64>,
-    /// Region of each grid node. Values are not joined across regions, so that jumps stay sharp.
+    /// Region of each grid node. Values are not joined across regions, so that jumps stay sharp; regions whose interface
+    /// is not given as a level set meet half-way between the nodes.
     pub labels: Option<Vec<u16>>,
     /// Level set of the domain at each grid node, negative inside: the picture is clipped where it is zero.
     pub mask: Option<Vec<f64>>,
