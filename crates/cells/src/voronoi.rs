@@ -75,8 +75,9 @@ pub fn voronoi_cell<const D: usize>(
     };
     let (lo, hi) = start_box(center, searched, container)?;
     body.reset(&lo, &hi);
-    clip_by_planes(center, container, &mut body)?;
+    let beyond = clip_by_planes(center, container, &mut body);
     clip_by_candidates(center, candidates, order, &mut body)?;
+    check_inside(center, beyond, &body)?;
     cut_by_curves(center, container, &mut body)?;
     let reach = 2.0 * body.radius();
     if reach > searched * (1.0 + REACH_TOLERANCE) {
@@ -155,31 +156,37 @@ fn start_box<const D: usize>(
     Ok((lo, hi))
 }
 
+/// Clips by the planes. Returns the plane that the node lies farthest beyond, if any, and by how much.
 fn clip_by_planes<const D: usize>(
     center: &[f64; D],
     container: &Container<D>,
     body: &mut Body,
-) -> Result<(), CellError> {
+) -> Option<(u16, f64)> {
+    let mut beyond: Option<(u16, f64)> = None;
     for (k, plane) in (0_u32..).zip(container.planes) {
         let height = plane.normal.iter().zip(center).map(|(n, x)| n * x).sum::<f64>() - plane.offset;
-        let radius = body.radius();
-        if height > OUTSIDE_TOLERANCE * radius {
-            return Err(CellError::OutsideDomain {
-                center: center.to_vec(),
-                face: plane.face,
-                distance: height,
-            });
+        if height > beyond.map_or(0.0, |worst| worst.1) {
+            beyond = Some((plane.face, height));
         }
         body.clip(&plane.normal, -height, Source::Plane(k));
-        if body.is_empty() {
-            return Err(CellError::OutsideDomain {
-                center: center.to_vec(),
-                face: plane.face,
-                distance: height,
-            });
-        }
     }
-    Ok(())
+    beyond
+}
+
+/// Refuses a node that lies beyond a plane by more than a small part of its cell, and a cell of which nothing is left.
+fn check_inside<const D: usize>(
+    center: &[f64; D],
+    beyond: Option<(u16, f64)>,
+    body: &Body,
+) -> Result<(), CellError> {
+    let radius = if body.is_empty() { 0.0 } else { body.radius() };
+    match beyond {
+        Some((face, distance)) if distance > OUTSIDE_TOLERANCE * radius => {
+            Err(CellError::OutsideDomain { center: center.to_vec(), face, distance })
+        }
+        _ if body.is_empty() => Err(CellError::Degenerate { center: center.to_vec(), volume: 0.0, radius }),
+        _ => Ok(()),
+    }
 }
 
 /// Clips by the bisectors with the candidates, from near to far, until the next one is too far away to matter.
@@ -204,14 +211,6 @@ fn clip_by_candidates<const D: usize>(
         let normal: [f64; D] = std::array::from_fn(|axis| candidate.1[axis] - center[axis]);
         if body.clip(&normal, 0.5 * squared, Source::Candidate(rank)) {
             reach = 2.0 * body.radius();
-        }
-        if body.is_empty() {
-            // Only a node that lies outside loses its whole cell to the others.
-            return Err(CellError::Degenerate {
-                center: center.to_vec(),
-                volume: 0.0,
-                radius: squared.sqrt(),
-            });
         }
     }
     Ok(())

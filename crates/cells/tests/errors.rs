@@ -29,6 +29,7 @@ fn nodes_outside_are_named() {
     let planes = unit_planes();
     assert!(matches!(build([1.2, 0.5], &OTHERS, &planes), Err(CellError::OutsideDomain { face: 1, .. })));
     assert!(matches!(build([0.5, 3.0], &OTHERS, &planes), Err(CellError::OutsideBox { .. })));
+    assert!(matches!(build([0.5, -2e-3], &OTHERS, &planes), Err(CellError::OutsideDomain { face: 2, .. })));
     // Off by round-off only: still a boundary node.
     let beyond = build([0.5, -1e-12], &OTHERS, &planes).unwrap();
     let on = build([0.5, 0.0], &OTHERS, &planes).unwrap();
