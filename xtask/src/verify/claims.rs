@@ -58,7 +58,7 @@ pub(crate) fn file<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
 pub(crate) struct Claims {
     suite: &'static str,
     partial: bool,
-    pub(crate) list: Vec<Claim>,
+    list: Vec<Claim>,
 }
 
 impl Claims {
@@ -114,6 +114,13 @@ impl Claims {
     ) {
         let expected = format!("{expected}; here {} … {}", short(band[0]), short(band[1]));
         self.judge(case, claim.into(), expected, measured, |m| (band[0]..=band[1]).contains(&m), Some(why));
+    }
+
+    /// The rows in the order of the cases, those about no single case last.
+    pub(crate) fn by_case(mut self, cases: &[&str]) -> Vec<Claim> {
+        let place = |claim: &Claim| cases.iter().position(|c| *c == claim.case).unwrap_or(cases.len());
+        self.list.sort_by_key(place);
+        self.list
     }
 
     fn judge(

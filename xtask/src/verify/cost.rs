@@ -52,7 +52,7 @@ pub(super) fn run(options: &Options) -> Study {
     check(&runner, rungs - 1, &mut claims);
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
     let sections = vec![section(&runner)];
-    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.list, sections }
+    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
 }
 
 /// Runs several times and keeps the run with the median time.

@@ -113,7 +113,7 @@ fn case_part(page: &mut Page, study: &Study, section: &Section) -> Result<(), Ou
         show(page, &figure.name, &figure.svg()?, &figure.caption);
         data(&mut page.html, figure);
     }
-    section.tables.iter().for_each(|t| table(&mut page.html, t));
+    section.tables.iter().filter(|t| !t.rows.is_empty()).for_each(|t| table(&mut page.html, t));
     let claims: Vec<&Claim> = study.claims.iter().filter(|c| c.case == section.case).collect();
     if !claims.is_empty() {
         claims_table(&mut page.html, &claims, false);

@@ -55,5 +55,5 @@ pub(super) fn run(options: &Options) -> Study {
     tables::check(&runner, &fractions, &mut claims);
     let sections = sections::sections(&runner, &fractions, &iterations);
     checks::no_failures(&runner, &mut claims);
-    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.list, sections }
+    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
 }

@@ -149,7 +149,7 @@ pub(super) fn run(options: &Options) -> Study {
     }
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
-    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.list, sections }
+    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
 }
 
 impl Family {
