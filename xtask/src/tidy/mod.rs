@@ -18,6 +18,7 @@ type Check = (&'static str, fn(&Path) -> io::Result<Vec<String>>);
 const CHECKS: &[Check] = &[
     ("arrows between crates point one way", arrows::between_crates),
     ("outside libraries are named by one crate each", arrows::to_the_outside),
+    ("a library that may be replaced is named in one file", sources::named_in_one_file),
     ("every crate has a README and the lints of the workspace", documents::crates_are_complete),
     ("every document is linked", documents::documents_are_linked),
     ("every example is mentioned", documents::examples_are_mentioned),

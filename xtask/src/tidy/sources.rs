@@ -13,6 +13,9 @@ const MAX_LINES: usize = 400;
 /// What must not be left in code. Words in strings and comments do not count.
 const UNDONE: &[&str] = &["todo!", "unimplemented!", "dbg!", "#[ignore"];
 
+/// Libraries whose names must not spread beyond one file.
+const REPLACEABLE: &[&str] = &["faer", "kiddo", "vtkio"];
+
 /// The longest files are named in the summary, this many of them.
 const NAMED: usize = 5;
 
@@ -58,6 +61,23 @@ pub(super) fn nothing_left_undone(root: &Path) -> io::Result<Vec<String>> {
             for word in UNDONE.iter().filter(|w| code.contains(**w)) {
                 wrong.push(format!("{}:{} `{word}`", shown(root, &path), number + 1));
             }
+        }
+    }
+    Ok(wrong)
+}
+
+pub(super) fn named_in_one_file(root: &Path) -> io::Result<Vec<String>> {
+    let sources = sources(root)?;
+    let mut wrong = Vec::new();
+    for library in REPLACEABLE {
+        let path = format!("{library}::");
+        // Tests may compare with whatever they like.
+        let names = |(file, text): &&(PathBuf, String)| {
+            !shown(root, file).contains("tests/") && text.lines().any(|line| code_of(line).contains(&path))
+        };
+        let files: Vec<String> = sources.iter().filter(names).map(|(path, _)| shown(root, path)).collect();
+        if files.len() > 1 {
+            wrong.push(format!("{library} is named in {}", files.join(", ")));
         }
     }
     Ok(wrong)
