@@ -63,6 +63,15 @@ pub enum MethodError {
         /// The part of sources and fluxes that is left over, relative to their size.
         defect: f64,
     },
+    /// Neighbour lists for cells or samples.
+    #[error("neighbour lists: {0}")]
+    Neighbors(#[from] meshless_neighbors::NeighborError),
+    /// The region graph.
+    #[error("regions: {0}")]
+    Geometry(#[from] meshless_geometry::GeometryError),
+    /// The rows of the method are no matrix.
+    #[error("matrix: {0}")]
+    Matrix(#[from] meshless_sparse::MatrixError),
     /// The linear system could not be solved.
     #[error(transparent)]
     Solve(#[from] SolveError),

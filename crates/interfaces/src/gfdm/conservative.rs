@@ -78,10 +78,12 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         let least = neighbors.iter().fold(supports.radius[i], |a, &j| a.min(supports.radius[j as usize]));
         let mut searched = 0.5 * (supports.radius[i] + least);
         let mut found = Vec::new();
-        for _ in 0..MAX_SEARCHES {
+        let mut searches = 1;
+        loop {
             match voronoi_cell(&points[i], &candidates, searched, &container, scratch) {
-                Err(CellError::Incomplete { needed }) => {
-                    searched = needed.min(2.0 * searched);
+                Err(CellError::Incomplete { needed, .. }) if searches < MAX_SEARCHES => {
+                    searches += 1;
+                    searched = needed.clamp(searched, 2.0 * searched);
                     found.clear();
                     self.index.within(&points[i], searched, &mut found);
                     candidates.clear();
@@ -90,8 +92,6 @@ impl<'a, const D: usize> CellBalance<'a, D> {
                 other => return other.map_err(|e| MethodError::cell(i, &points[i], e)),
             }
         }
-        let needed = CellError::Incomplete { needed: 2.0 * searched };
-        Err(MethodError::cell(i, &points[i], needed))
     }
 
     /// The balance over the cell of node i.

@@ -33,7 +33,7 @@ pub struct Gfdm {
 impl<const D: usize> Method<D> for Gfdm {
     fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
         self.check(problem)?;
-        Ok(Parts::build(problem, &self.params)?.assemble(problem))
+        Parts::build(problem, &self.params)?.assemble(problem)
     }
 }
 
@@ -85,7 +85,7 @@ impl Parts {
         Ok(Self { kinds, known, strong, boundary, cells, counts, stencil_seconds: start.elapsed().as_secs_f64() })
     }
 
-    fn assemble<const D: usize>(self, problem: &Problem<'_, D>) -> Discretization {
+    fn assemble<const D: usize>(self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
         let mut rhs = vec![0.0; self.kinds.len()];
         let mut boundary_index = vec![u32::MAX; self.kinds.len()];
         for (index, node) in problem.cloud.boundary().iter().enumerate() {
@@ -107,28 +107,28 @@ impl Parts {
                 if let Some(strong) = &self.strong {
                     let measure = strong_measure(problem, i);
                     let (neighbors, row) = strong.row(problem, i);
-                    neighbors.iter().zip(row).for_each(|(&j, c)| out.push(j, -measure * c));
+                    neighbors.iter().zip(row).for_each(|(&j, c)| out.push(j as usize, -measure * c));
                 }
             }
             RowKind::StrongBoundary => {
                 if let Some(row) = &self.boundary[boundary_index[i] as usize] {
                     let measure = boundary_measure(problem, i);
-                    row.neighbors.iter().zip(&row.coefficients).for_each(|(&j, c)| out.push(j, measure * c));
+                    row.neighbors.iter().zip(&row.coefficients).for_each(|(&j, c)| out.push(j as usize, measure * c));
                     out.add_to_row_sum(measure * row.row_sum);
                 }
             }
             RowKind::Conservative => {
                 if let Some(row) = &self.cells[i] {
-                    row.entries.iter().for_each(|&(j, t)| out.push(j, -t));
+                    row.entries.iter().for_each(|&(j, t)| out.push(j as usize, -t));
                     out.add_to_row_sum(row.row_sum);
                 }
             }
-        });
+        })?;
         let volumes = (0..self.kinds.len())
             .map(|i| self.cells[i].as_ref().map_or_else(|| strong_measure(problem, i), |row| row.volume))
             .collect();
         let Self { kinds, counts, stencil_seconds, .. } = self;
-        Discretization { rows, rhs, kinds, volumes, counts, stencil_seconds }
+        Ok(Discretization { rows, rhs, kinds, volumes, counts, stencil_seconds })
     }
 }
 

@@ -50,7 +50,7 @@ impl<const D: usize> Boundary<D> {
     /// Which entry of the scene holds on a face at a point.
     fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
         self.entries.iter().position(|entry| {
-            entry.face.is_none_or(|f| f == face) && entry.place.as_ref().is_none_or(|place| place.at(x) != 0.0)
+            entry.face.is_none_or(|f| f == face) && entry.place.as_ref().is_none_or(|place| holds(place.at(x)))
         })
     }
 
@@ -89,6 +89,11 @@ impl<const D: usize> Kind<D> {
             Self::Robin { a, b, g } => Condition::Robin { a: a.at(x), b: b.at(x), g: g.at(x) },
         }
     }
+}
+
+/// Whether a `where` that has this value matches; one that is not a number does not.
+fn holds(value: f64) -> bool {
+    value.is_finite() && value != 0.0
 }
 
 /// Values must be finite, and a Robin condition must have a flux term and not feed the field.

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use meshless_geometry::{Cloud, CloudParams, Domain, FaceId, RegionMap, generate};
+use meshless_geometry::{Cloud, CloudParams, Domain, RegionMap, generate};
 use meshless_interfaces::gfdm::Gfdm;
 use meshless_interfaces::{
-    BoundaryData, Condition, Field, InterfaceJump, Material, Method, MethodError, Problem, Supports,
+    BoundaryData, Condition, InterfaceJump, Material, Method, MethodError, Problem, Supports,
 };
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
 
@@ -131,15 +131,5 @@ impl<const D: usize> Discrete<D> {
             }
             error => Error::Method(error),
         }
-    }
-
-    /// Names of the faces of the domain.
-    pub(crate) fn face_name(&self, face: FaceId) -> &str {
-        &self.domain.faces()[face.0 as usize]
-    }
-
-    /// The diffusivity of a region.
-    pub(crate) fn diffusivity(&self, region: u16) -> &Field<D> {
-        &self.materials[region as usize].diffusivity
     }
 }

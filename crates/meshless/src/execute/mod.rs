@@ -13,8 +13,9 @@ use meshless_interfaces::{Discretization, SystemParams, SystemSolution, solve};
 use crate::plan::{Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
-use crate::{Error, NodalField, Picture};
-use discrete::Discrete;
+use crate::{Error, NodalField};
+pub(crate) use discrete::{Discrete, Exact};
+pub use picture::Picture;
 
 /// Told what is being done; for progress bars.
 pub trait Progress {
