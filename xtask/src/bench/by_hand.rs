@@ -43,6 +43,6 @@ pub(super) fn laplace(plan: &Plan) -> Result<Vec<f64>, Box<dyn std::error::Error
         jumps: &[],
     };
     let discretization = Gfdm { params: plan.method.gfdm }.discretize(&problem)?;
-    let params = SystemParams { solver: plan.solver.clone(), split_floating: false };
+    let params = SystemParams { solver: plan.solver, split_floating: false };
     Ok(solve(&problem, &discretization, &params)?.u)
 }

@@ -88,7 +88,7 @@ fn solve(text: &str) -> Result<[f64; 4], Box<dyn std::error::Error + Send + Sync
     let solved = start.elapsed().as_secs_f64();
     let folder = std::env::temp_dir().join(format!("meshless-bench-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
-    write_outputs(&scene, &plan, &solution, &folder)?;
+    write_outputs(&plan, &solution, &folder, "effect")?;
     std::fs::remove_dir_all(&folder)?;
     let seconds = &solution.report.seconds;
     let total = start.elapsed().as_secs_f64();

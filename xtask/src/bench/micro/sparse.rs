@@ -1,7 +1,9 @@
 //! The matrix-vector product against the bandwidth of the memory.
 
 use meshless_neighbors::{NeighborLists, Radius, within_radius};
-use meshless_sparse::{Csr, DifferenceMatrix};
+use meshless_sparse::{
+    Csr, DifferenceMatrix, MatrixError, PreconditionerKind, Prepared, SolverKind, SolverParams,
+};
 use rayon::prelude::*;
 
 use super::irregular;
@@ -57,6 +59,14 @@ pub(in crate::bench) fn run() -> crate::bench::Outcome {
     for threads in [1, 2] {
         row("assembly from rows", threads, assembly[threads - 1], bytes);
     }
+    for preconditioner in [PreconditionerKind::Jacobi, PreconditionerKind::Ilu0] {
+        let params =
+            SolverParams { kind: SolverKind::BiCgStab { l: 2 }, preconditioner, ..SolverParams::default() };
+        let setup = on_one_and_two(3, || Prepared::new(&matrix, &params))?;
+        for threads in [1, 2] {
+            row(&format!("set-up, {}", preconditioner.name()), threads, setup[threads - 1], bytes);
+        }
+    }
     Ok(vec![table])
 }
 
@@ -83,13 +93,13 @@ fn matrix() -> Result<(NeighborLists, Csr), Box<dyn std::error::Error + Send + S
     let (cloud, spacing) = irregular::<2>(NODES)?;
     let lists =
         within_radius(cloud.points(), Radius::Uniform(2.9 * spacing), meshless_neighbors::Distance::D2)?;
-    let matrix = rows(&lists).to_csr();
+    let matrix = rows(&lists)?.to_csr();
     Ok((lists, matrix))
 }
 
-fn rows(lists: &NeighborLists) -> DifferenceMatrix {
+fn rows(lists: &NeighborLists) -> Result<DifferenceMatrix, MatrixError> {
     DifferenceMatrix::from_rows(lists.len(), |i, out| {
-        lists.of(i).iter().for_each(|&j| out.push(j, -1.0));
+        lists.of(i).iter().for_each(|&j| out.push(j as usize, -1.0));
         out.add_to_row_sum(1.0);
     })
 }
