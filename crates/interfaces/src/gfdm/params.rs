@@ -15,7 +15,7 @@ pub struct StrongParams {
 
 impl Default for StrongParams {
     fn default() -> Self {
-        Self { degree: 2, smoothing: 0, log_scaling: true, correction: false }
+        Self { degree: 2, smoothing: 0, log_scaling: true, correction: true }
     }
 }
 
