@@ -138,8 +138,9 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             row.rhs -= transmissibility * sign * value.at(&foot);
         }
         if let Some(flux) = &jump.flux {
-            // The staircase of cell faces has the area of the interface only as seen along its normal.
-            let seen = (0..D).map(|k| normal[k] * direction[k]).sum::<f64>();
+            // The staircase of cell faces has the area of the interface only as seen along its normal. Both sides lose
+            // their part of the surface source, so its sign is that of going from A to B on either.
+            let seen = sign * (0..D).map(|k| normal[k] * direction[k]).sum::<f64>();
             row.rhs -= face.area * flux.at(&foot) * seen * here / (here + there);
         }
     }

@@ -104,7 +104,9 @@ fn execute_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Pro
         Estimate { l2: None, why_not: Some("not asked for".to_owned()) }
     };
     seconds.estimate = before.elapsed().as_secs_f64();
+    let before = Instant::now();
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, &solved)).transpose()?;
+    seconds.post += before.elapsed().as_secs_f64();
     seconds.total = start.elapsed().as_secs_f64();
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), &solved.discretization.kinds);
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
