@@ -5,6 +5,7 @@ use std::io::{IsTerminal, Write};
 use meshless::plan::{Plan, Stage};
 use meshless::scene::{LayoutName, Scene};
 use meshless::{Error, Silent, Solution};
+use meshless_sparse::SolverKind;
 
 use super::options::Options;
 use super::row::Row;
@@ -27,6 +28,8 @@ pub(crate) struct Extra {
     pub(crate) grid: bool,
     /// Draw the solution.
     pub(crate) picture: bool,
+    /// By BiCGStab(2) to this residual, whatever the plan says.
+    pub(crate) krylov: Option<f64>,
 }
 
 /// Solves `problem`, the text of a scene without `[method]`, as `key` says.
@@ -38,6 +41,10 @@ pub(crate) fn solve(problem: &str, key: &Key, extra: Extra) -> Result<Solution, 
     scene.output.plot = extra.picture;
     let mut plan = Plan::new(&scene)?;
     plan.stages.retain(|stage| *stage != Stage::Estimate);
+    if let Some(tolerance) = extra.krylov {
+        plan.solver.kind = SolverKind::BiCgStab { l: 2 };
+        plan.solver.tolerance = tolerance;
+    }
     meshless::execute(&scene, &plan, &mut Silent)
 }
 
@@ -97,6 +104,9 @@ fn row(suite: &'static str, key: &Key, extra: Extra, solution: &Solution) -> Row
     params.extend(key.variant.params());
     if extra.grid {
         params.push("grid".to_owned());
+    }
+    if let Some(tolerance) = extra.krylov {
+        params.push(format!("bicgstab to {tolerance:e}"));
     }
     let (errors, seconds) = (report.errors.as_ref(), &report.seconds);
     Row {

@@ -29,7 +29,16 @@ impl Variant {
 
     /// The strong form with so many smoothing cycles, on eta or on log eta.
     pub(crate) const fn strong(smoothing: usize, log_scaling: bool) -> Self {
-        Self { smoothing: Some(smoothing), log_scaling: Some(log_scaling), ..Self::plain("gfdm-classical") }
+        Self {
+            smoothing: Some(smoothing),
+            log_scaling: Some(log_scaling),
+            ..Self::plain("gfdm-classical").directly()
+        }
+    }
+
+    /// The same with a direct solver, so that no stopping criterion shows in the results.
+    pub(crate) const fn directly(self) -> Self {
+        Self { solver: Some("direct"), ..self }
     }
 
     /// The same with boundary conditions by stencils rather than by balances.

