@@ -78,9 +78,13 @@ fn solve_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Progr
 
 fn execute_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solution, Error> {
     let start = Instant::now();
-    let solved = solve_in::<D>(scene, plan, progress)?;
+    let mut solved = solve_in::<D>(scene, plan, progress)?;
     let mut seconds = solved.seconds.clone();
     let post = Instant::now();
+    let exact = plan.runs(Stage::Errors).then(|| solved.discrete.exact(scene)).transpose()?;
+    if let (true, Some(exact)) = (solved.system.up_to_constant, &exact) {
+        measure::match_means(&mut solved, exact);
+    }
     let problem = solved.discrete.problem();
     let u = &solved.system.u;
     let gradient = if plan.runs(Stage::Gradient) {
@@ -89,7 +93,6 @@ fn execute_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Pro
     } else {
         None
     };
-    let exact = plan.runs(Stage::Errors).then(|| solved.discrete.exact(scene)).transpose()?;
     let errors = match (&exact, &gradient) {
         (Some(exact), Some(gradient)) => Some(measure::errors(scene, &solved, exact, gradient)),
         _ => None,
