@@ -1,0 +1,180 @@
+//! Building a matrix row by row, in parallel, straight into compressed rows.
+
+use super::Csr;
+use crate::error::MatrixError;
+use rayon::prelude::*;
+
+/// Rows that one task builds into buffers of its own before they are joined.
+const ROWS_PER_BLOCK: usize = 1024;
+
+/// Collects the entries of one row in any order; repeated columns are added in the order of the pushes.
+#[derive(Debug, Default)]
+pub struct RowBuilder {
+    entries: Vec<(u32, f64)>,
+    /// A column that does not fit into 32 bits; reported when the row is finished.
+    too_large: Option<usize>,
+    row_sum: f64,
+}
+
+impl RowBuilder {
+    /// Adds `value` to the entry in `column`.
+    #[inline]
+    pub fn push(&mut self, column: usize, value: f64) {
+        match u32::try_from(column) {
+            Ok(column) => self.entries.push((column, value)),
+            Err(_) => self.too_large = Some(column),
+        }
+    }
+
+    /// Adds `value` to the sum of the row. Means something in difference form only
+    /// ([`DifferenceMatrix`](crate::DifferenceMatrix)); a plain [`Csr`] ignores it.
+    #[inline]
+    pub fn add_to_row_sum(&mut self, value: f64) {
+        self.row_sum += value;
+    }
+
+    pub(crate) fn drop_column(&mut self, column: usize) {
+        self.entries.retain(|e| e.0 as usize != column);
+    }
+
+    /// Forgets what was pushed.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+        self.too_large = None;
+        self.row_sum = 0.0;
+    }
+
+    /// Sorts, merges, checks and appends the row to the block.
+    fn finish(&mut self, row: usize, ncols: usize, block: &mut Block) -> Result<(), MatrixError> {
+        self.entries.sort_by_key(|e| e.0);
+        let last = self.entries.last().map_or(0, |e| e.0 as usize);
+        if let Some(column) = self.too_large.or((last >= ncols && !self.entries.is_empty()).then_some(last)) {
+            return Err(MatrixError::ColumnOutOfRange { row, column, ncols });
+        }
+        let start = block.indices.len();
+        for &(column, value) in &self.entries {
+            if !value.is_finite() {
+                return Err(MatrixError::NotFinite { row, column: column as usize, value });
+            }
+            if block.indices.len() > start && block.indices.last() == Some(&column) {
+                let end = block.values.len() - 1;
+                block.values[end] += value;
+            } else {
+                block.indices.push(column);
+                block.values.push(value);
+            }
+        }
+        if !self.row_sum.is_finite() {
+            return Err(MatrixError::NotFinite { row, column: row, value: self.row_sum });
+        }
+        block.lengths.push(block.indices.len() - start);
+        block.row_sums.push(self.row_sum);
+        Ok(())
+    }
+}
+
+#[derive(Default)]
+struct Block {
+    lengths: Vec<usize>,
+    indices: Vec<u32>,
+    values: Vec<f64>,
+    row_sums: Vec<f64>,
+}
+
+/// Builds `nrows` rows in parallel and gives the matrix and the row sums. `scratch` makes what one task needs;
+/// of several errors the one of the lowest row is returned, whatever the number of threads.
+pub(crate) fn build_rows<S, E: From<MatrixError> + Send>(
+    nrows: usize,
+    ncols: usize,
+    scratch: impl Fn() -> S + Sync,
+    fill: impl Fn(&mut S, usize, &mut RowBuilder) -> Result<(), E> + Sync,
+) -> Result<(Csr, Vec<f64>), E> {
+    if ncols.max(nrows) > u32::MAX as usize {
+        return Err(MatrixError::TooLarge { size: ncols.max(nrows) }.into());
+    }
+    let build_block = |state: &mut (S, RowBuilder), b: usize| -> Result<Block, E> {
+        let mut block = Block::default();
+        for row in b * ROWS_PER_BLOCK..nrows.min((b + 1) * ROWS_PER_BLOCK) {
+            state.1.clear();
+            fill(&mut state.0, row, &mut state.1)?;
+            state.1.finish(row, ncols, &mut block)?;
+        }
+        Ok(block)
+    };
+    let blocks: Vec<Result<Block, E>> = (0..nrows.div_ceil(ROWS_PER_BLOCK))
+        .into_par_iter()
+        .map_init(|| (scratch(), RowBuilder::default()), build_block)
+        .collect();
+    let blocks = blocks.into_iter().collect::<Result<Vec<_>, E>>()?;
+    Ok(join(nrows, ncols, &blocks))
+}
+
+fn join(nrows: usize, ncols: usize, blocks: &[Block]) -> (Csr, Vec<f64>) {
+    let nnz = blocks.iter().map(|b| b.indices.len()).sum();
+    let mut offsets = Vec::with_capacity(nrows + 1);
+    let mut indices = Vec::with_capacity(nnz);
+    let mut values = Vec::with_capacity(nnz);
+    let mut row_sums = Vec::with_capacity(nrows);
+    let mut end = 0;
+    offsets.push(0);
+    for block in blocks {
+        for length in &block.lengths {
+            end += length;
+            offsets.push(end);
+        }
+        indices.extend_from_slice(&block.indices);
+        values.extend_from_slice(&block.values);
+        row_sums.extend_from_slice(&block.row_sums);
+    }
+    (Csr::from_trusted(ncols, offsets, indices, values), row_sums)
+}
+
+impl Csr {
+    /// Builds a matrix in parallel: `fill(i, row)` pushes the entries of row `i`, in any order; repeated columns
+    /// add up in the order of the pushes.
+    ///
+    /// # Errors
+    /// A column that is not below `ncols`, or a value that is not finite, with its row.
+    pub fn from_rows(
+        nrows: usize,
+        ncols: usize,
+        fill: impl Fn(usize, &mut RowBuilder) + Sync,
+    ) -> Result<Self, MatrixError> {
+        Self::try_from_rows(nrows, ncols, || (), |(), i, row| Ok(fill(i, row)))
+    }
+
+    /// Like [`Csr::from_rows`], with a closure that may fail and scratch for each task, which is made by `scratch`
+    /// a few times per thread and not per row.
+    ///
+    /// # Errors
+    /// Those of the closure and those of [`Csr::from_rows`]; of several, the one of the lowest row.
+    pub fn try_from_rows<S, E: From<MatrixError> + Send>(
+        nrows: usize,
+        ncols: usize,
+        scratch: impl Fn() -> S + Sync,
+        fill: impl Fn(&mut S, usize, &mut RowBuilder) -> Result<(), E> + Sync,
+    ) -> Result<Self, E> {
+        build_rows(nrows, ncols, scratch, fill).map(|(matrix, _)| matrix)
+    }
+
+    /// A matrix from triplets (row, column, value) in any order; repeated places add up in the order given.
+    /// Meant for small matrices: large ones are better built by rows.
+    ///
+    /// # Errors
+    /// A row or column out of range, or a value that is not finite.
+    pub fn from_triplets(
+        nrows: usize,
+        ncols: usize,
+        triplets: &[(usize, usize, f64)],
+    ) -> Result<Self, MatrixError> {
+        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); nrows];
+        for &(row, column, value) in triplets {
+            rows.get_mut(row).ok_or(MatrixError::RowOutOfRange { row, nrows })?.push((column, value));
+        }
+        Self::from_rows(nrows, ncols, |i, row| {
+            for &(column, value) in &rows[i] {
+                row.push(column, value);
+            }
+        })
+    }
+}

@@ -1,0 +1,86 @@
+//! Products with vectors, in parallel over blocks of rows.
+
+use super::Csr;
+use rayon::prelude::*;
+
+/// Rows that one task works through. A row's result does not depend on it.
+pub(crate) const ROWS_PER_TASK: usize = 2048;
+
+/// `y[i] = f(i)` for every row, in parallel where there is enough to do.
+#[inline]
+pub(crate) fn for_each_row(y: &mut [f64], f: impl Fn(usize, &mut f64) + Sync) {
+    if y.len() <= ROWS_PER_TASK {
+        for (i, y) in y.iter_mut().enumerate() {
+            f(i, y);
+        }
+        return;
+    }
+    y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, y)| {
+        for (k, y) in y.iter_mut().enumerate() {
+            f(task * ROWS_PER_TASK + k, y);
+        }
+    });
+}
+
+impl Csr {
+    /// `sum_j a_ij x_j`, added from left to right.
+    #[inline]
+    pub(crate) fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
+        let (columns, values) = self.row(i);
+        columns.iter().zip(values).fold(0.0, |sum, (&j, a)| sum + a * x[j as usize])
+    }
+
+    /// `y = A x`.
+    ///
+    /// # Panics
+    /// If `x` has not `ncols` or `y` not `nrows` elements.
+    pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
+        assert!(x.len() == self.ncols() && y.len() == self.nrows(), "A x: lengths do not match the matrix");
+        for_each_row(y, |i, y| *y = self.row_dot(i, x));
+    }
+
+    /// `y += alpha A x`.
+    ///
+    /// # Panics
+    /// If `x` has not `ncols` or `y` not `nrows` elements.
+    pub fn mul_vec_add(&self, alpha: f64, x: &[f64], y: &mut [f64]) {
+        assert!(x.len() == self.ncols() && y.len() == self.nrows(), "A x: lengths do not match the matrix");
+        for_each_row(y, |i, y| *y += alpha * self.row_dot(i, x));
+    }
+
+    /// `r = b - A x`, subtracted entry by entry so that what cancels does so before the sum grows.
+    ///
+    /// # Panics
+    /// If the lengths of `x`, `b` and `r` do not match the matrix.
+    pub fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
+        let fits = x.len() == self.ncols() && b.len() == self.nrows() && r.len() == self.nrows();
+        assert!(fits, "b - A x: lengths do not match the matrix");
+        for_each_row(r, |i, r| {
+            let (columns, values) = self.row(i);
+            *r = columns.iter().zip(values).fold(b[i], |sum, (&j, a)| sum - a * x[j as usize]);
+        });
+    }
+
+    /// Componentwise backward error `max_i |b - A x|_i / (|A| |x| + |b|)_i` (Oettli and Prager 1964): the largest
+    /// relative change of single entries for which `x` is exact. Rows whose denominator is 0 do not count.
+    ///
+    /// # Panics
+    /// If the lengths of `x` and `b` do not match the matrix.
+    #[must_use]
+    pub fn backward_error(&self, x: &[f64], b: &[f64]) -> f64 {
+        assert!(x.len() == self.ncols() && b.len() == self.nrows(), "lengths do not match the matrix");
+        let mut ratio = vec![0.0; b.len()];
+        for_each_row(&mut ratio, |i, ratio| {
+            let (columns, values) = self.row(i);
+            let (mut r, mut size) = (b[i], b[i].abs());
+            for (&j, a) in columns.iter().zip(values) {
+                let term = a * x[j as usize];
+                r -= term;
+                size += term.abs();
+            }
+            *ratio = if size == 0.0 { 0.0 } else { r.abs() / size };
+        });
+        // NaN must come through: f64::max would swallow it.
+        ratio.iter().fold(0.0, |worst: f64, &r| if r > worst || r.is_nan() { r } else { worst })
+    }
+}

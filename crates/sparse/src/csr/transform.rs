@@ -1,0 +1,98 @@
+//! Transposes, permutations, scaled rows.
+
+use super::Csr;
+use crate::error::MatrixError;
+
+impl Csr {
+    /// The transpose; columns come out sorted without a sort.
+    #[must_use]
+    pub fn transpose(&self) -> Self {
+        let mut offsets = vec![0usize; self.ncols() + 1];
+        for &j in self.indices() {
+            offsets[j as usize + 1] += 1;
+        }
+        for j in 0..self.ncols() {
+            offsets[j + 1] += offsets[j];
+        }
+        let mut next = offsets.clone();
+        let mut indices = vec![0u32; self.nnz()];
+        let mut values = vec![0.0; self.nnz()];
+        for i in 0..self.nrows() {
+            let (columns, row) = self.row(i);
+            for (&j, &a) in columns.iter().zip(row) {
+                let place = next[j as usize];
+                next[j as usize] += 1;
+                indices[place] = i as u32;
+                values[place] = a;
+            }
+        }
+        Self::from_trusted(self.nrows(), offsets, indices, values)
+    }
+
+    /// The diagonal, 0 where no entry is stored.
+    #[must_use]
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.nrows()).map(|i| self.get(i, i)).collect()
+    }
+
+    /// The matrix in a new numbering of rows and columns alike: row `k` of the result is row `order[k]` of this one.
+    ///
+    /// # Errors
+    /// [`MatrixError::NotSquare`], or [`MatrixError::NotAPermutation`] where `order` does not name every row once.
+    pub fn permuted(&self, order: &[u32]) -> Result<Self, MatrixError> {
+        self.require_square()?;
+        let place = inverse_permutation(order, self.nrows())?;
+        Self::from_rows(self.nrows(), self.ncols(), |k, row| {
+            let (columns, values) = self.row(order[k] as usize);
+            for (&j, &a) in columns.iter().zip(values) {
+                row.push(place[j as usize] as usize, a);
+            }
+        })
+    }
+
+    /// The matrix with row `i` multiplied by `factors[i]`.
+    ///
+    /// # Errors
+    /// [`MatrixError::Length`], and [`MatrixError::NotFinite`] where a product overflows or a factor is not finite.
+    pub fn row_scaled(&self, factors: &[f64]) -> Result<Self, MatrixError> {
+        MatrixError::check_length("row factors", factors.len(), self.nrows())?;
+        let mut scaled = self.clone();
+        for (i, &factor) in factors.iter().enumerate() {
+            let range = self.offsets[i]..self.offsets[i + 1];
+            for k in range {
+                let value = scaled.values[k] * factor;
+                if !value.is_finite() {
+                    return Err(MatrixError::NotFinite { row: i, column: self.indices[k] as usize, value });
+                }
+                scaled.values[k] = value;
+            }
+        }
+        Ok(scaled)
+    }
+
+    /// Whether the matrix equals its transpose, entry by entry.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        self.nrows() == self.ncols() && *self == self.transpose()
+    }
+
+    pub(crate) fn require_square(&self) -> Result<(), MatrixError> {
+        if self.nrows() == self.ncols() {
+            return Ok(());
+        }
+        Err(MatrixError::NotSquare { nrows: self.nrows(), ncols: self.ncols() })
+    }
+}
+
+/// `place` with `place[order[k]] = k`.
+fn inverse_permutation(order: &[u32], n: usize) -> Result<Vec<u32>, MatrixError> {
+    MatrixError::check_length("permutation", order.len(), n)?;
+    let mut place = vec![u32::MAX; n];
+    for (k, &i) in order.iter().enumerate() {
+        match place.get_mut(i as usize) {
+            Some(slot) if *slot == u32::MAX => *slot = k as u32,
+            _ => return Err(MatrixError::NotAPermutation { position: k, index: i as usize }),
+        }
+    }
+    Ok(place)
+}

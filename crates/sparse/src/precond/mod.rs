@@ -1,0 +1,81 @@
+//! Preconditioners: approximations of `A^-1` that are cheap to apply.
+
+mod factors;
+mod ilu0;
+mod ilut;
+mod jacobi;
+
+pub use ilu0::ilu0;
+pub use ilut::ilut;
+pub use jacobi::Jacobi;
+
+pub use factors::IncompleteLu;
+
+use crate::csr::Csr;
+use crate::error::MatrixError;
+use std::fmt::Debug;
+
+/// An approximation of `A^-1`. Set up once for a matrix whose rows are scaled, then applied any number of times.
+/// Multigrid, too, is one of these.
+pub trait Preconditioner: Debug + Send + Sync {
+    /// Short name for reports.
+    fn name(&self) -> String;
+    /// `z = M^-1 r`. `scratch` has at least [`Preconditioner::scratch_len`] elements of any content.
+    fn apply(&self, r: &[f64], z: &mut [f64], scratch: &mut [f64]);
+    /// Elements of scratch that one application needs.
+    fn scratch_len(&self) -> usize {
+        0
+    }
+    /// Pivots that were replaced because they were almost zero.
+    fn replaced_pivots(&self) -> usize {
+        0
+    }
+}
+
+/// Which preconditioner.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum PreconditionerKind {
+    /// None.
+    None,
+    /// The diagonal.
+    Jacobi,
+    /// Incomplete factors on the pattern of the matrix.
+    #[default]
+    Ilu0,
+    /// Incomplete factors with dual threshold (Saad 1994).
+    Ilut {
+        /// Entries kept in a row of either factor beyond those of the matrix.
+        fill: usize,
+        /// Entries below this part of the norm of the row are dropped.
+        drop: f64,
+    },
+}
+
+impl PreconditionerKind {
+    /// Sets the preconditioner up.
+    ///
+    /// # Errors
+    /// [`MatrixError::NotSquare`].
+    pub fn build(self, matrix: &Csr) -> Result<Box<dyn Preconditioner>, MatrixError> {
+        matrix.require_square()?;
+        Ok(match self {
+            Self::None => Box::new(NoPreconditioner),
+            Self::Jacobi => Box::new(Jacobi::new(matrix)?),
+            Self::Ilu0 => Box::new(ilu0(matrix)?),
+            Self::Ilut { fill, drop } => Box::new(ilut(matrix, fill, drop)?),
+        })
+    }
+}
+
+#[derive(Debug)]
+struct NoPreconditioner;
+
+impl Preconditioner for NoPreconditioner {
+    fn name(&self) -> String {
+        "none".to_owned()
+    }
+    fn apply(&self, r: &[f64], z: &mut [f64], _: &mut [f64]) {
+        z.copy_from_slice(r);
+    }
+}

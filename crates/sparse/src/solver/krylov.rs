@@ -1,0 +1,231 @@
+//! What the iterative methods share: restarts, the true residual, and when to give up.
+
+use super::bicgstab::bicgstab_cycle;
+use super::cg::cg_cycle;
+use super::gmres::gmres_cycle;
+use super::{SolveError, SolveInfo, SolverParams};
+use crate::csr::Csr;
+use crate::precond::Preconditioner;
+use crate::vector::{axpy, norm};
+
+/// A cycle that reduces the true residual by less than this factor has gained nothing to speak of.
+const LEAST_GAIN: f64 = 0.5;
+
+/// The same for a cycle that ended only because GMRES ran out of vectors: slow is not hopeless.
+const LEAST_GAIN_RESTART: f64 = 0.999;
+
+/// Cycles in a row without gain before the iteration is given up.
+const CYCLES_WITHOUT_GAIN: usize = 3;
+
+/// A cycle aims at this part of the tolerance, so that the true residual meets it at the first attempt.
+const AIM: f64 = 0.5;
+
+/// Something that maps vectors to vectors, `y = A x`.
+pub trait LinearOperator: Sync {
+    /// Number of rows and columns.
+    fn dim(&self) -> usize;
+    /// `y = A x`; both have [`LinearOperator::dim`] elements.
+    fn apply(&self, x: &[f64], y: &mut [f64]);
+}
+
+impl LinearOperator for Csr {
+    fn dim(&self) -> usize {
+        self.nrows()
+    }
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        self.mul_vec(x, y);
+    }
+}
+
+/// An iterative method, its parameters checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Method {
+    BiCgStab { l: usize },
+    Gmres { restart: usize },
+    Cg,
+}
+
+impl Method {
+    fn name(self) -> String {
+        match self {
+            Self::BiCgStab { l } => format!("BiCGStab({l})"),
+            Self::Gmres { restart } => format!("GMRES({restart})"),
+            Self::Cg => "CG".to_owned(),
+        }
+    }
+}
+
+/// Why a cycle ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CycleEnd {
+    /// The recurrence says that the target is met.
+    Claimed,
+    /// All vectors are used.
+    Restart,
+    /// No products are left.
+    Budget,
+    /// A denominator vanished.
+    BreakDown(&'static str),
+}
+
+/// The correction equation `A d = r` of one cycle, from `d = 0`.
+pub(crate) struct Cycle<'a> {
+    pub(crate) a: &'a dyn LinearOperator,
+    pub(crate) m: &'a dyn Preconditioner,
+    /// Residual norm at which the cycle may stop.
+    pub(crate) target: f64,
+    /// What residual norms are divided by in the history.
+    pub(crate) unit: f64,
+    /// Products with the matrix that may still be made.
+    pub(crate) budget: usize,
+    pub(crate) history: &'a mut Vec<f64>,
+    pub(crate) scratch: &'a mut [f64],
+    pub(crate) products: usize,
+}
+
+impl Cycle<'_> {
+    /// `y = A M^-1 x`, with `M^-1 x` left in `z`.
+    pub(crate) fn apply(&mut self, x: &[f64], z: &mut [f64], y: &mut [f64]) {
+        self.m.apply(x, z, self.scratch);
+        self.a.apply(z, y);
+        self.products += 1;
+    }
+
+    pub(crate) fn precondition(&mut self, x: &[f64], z: &mut [f64]) {
+        self.m.apply(x, z, self.scratch);
+    }
+
+    pub(crate) fn record(&mut self, residual: f64) {
+        self.history.push(residual / self.unit);
+    }
+
+    pub(crate) fn is_spent(&self) -> bool {
+        self.products >= self.budget
+    }
+}
+
+/// Solves `A x = b` by cycles of `method`, each of which solves for a correction of the true residual.
+pub(crate) fn iterate(
+    method: Method,
+    a: &Csr,
+    m: &dyn Preconditioner,
+    b: &[f64],
+    params: &SolverParams,
+) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+    let mut run = Run::new(method, m, b);
+    if run.unit == 0.0 {
+        return Ok((vec![0.0; b.len()], run.info(0.0, 0.0, m)));
+    }
+    let mut correction = vec![0.0; b.len()];
+    let mut residual = b.to_vec();
+    let mut last_size = run.unit;
+    loop {
+        let target = AIM * params.tolerance * run.unit;
+        let mut cycle = Cycle {
+            a,
+            m,
+            // Where the norm is met already, only the componentwise error is left to improve.
+            target: target.min(AIM * last_size),
+            unit: run.unit,
+            budget: params.max_iterations.saturating_sub(run.products),
+            history: &mut run.history,
+            scratch: &mut run.scratch,
+            products: 0,
+        };
+        correction.fill(0.0);
+        let end = match method {
+            Method::BiCgStab { l } => bicgstab_cycle(&mut cycle, l, &mut residual, &mut correction),
+            Method::Gmres { restart } => gmres_cycle(&mut cycle, restart, &mut residual, &mut correction),
+            Method::Cg => cg_cycle(&mut cycle, &mut residual, &mut correction),
+        };
+        run.products += cycle.products;
+        axpy(1.0, &correction, &mut run.x);
+        a.residual(&run.x, b, &mut residual);
+        let size = norm(&residual);
+        run.keep_best(size);
+        let backward_error = || a.backward_error(&run.x, b);
+        if size <= params.tolerance * run.unit && params.backward_error.is_none_or(|e| backward_error() <= e) {
+            let backward_error = backward_error();
+            let info = run.info(size / run.unit, backward_error, m);
+            return Ok((run.x, info));
+        }
+        run.judge(end, size, last_size, params)?;
+        if !size.is_finite() || size > last_size {
+            // A cycle that made it worse is undone before the next one.
+            run.x.clone_from(&run.best);
+            a.residual(&run.x, b, &mut residual);
+        }
+        last_size = norm(&residual);
+    }
+}
+
+/// State of an iteration between cycles.
+struct Run {
+    name: String,
+    x: Vec<f64>,
+    best: Vec<f64>,
+    best_size: f64,
+    /// Norm of the right-hand side.
+    unit: f64,
+    history: Vec<f64>,
+    scratch: Vec<f64>,
+    products: usize,
+    without_gain: usize,
+}
+
+impl Run {
+    fn new(method: Method, m: &dyn Preconditioner, b: &[f64]) -> Self {
+        let unit = norm(b);
+        Self {
+            name: format!("{} + {}", method.name(), m.name()),
+            x: vec![0.0; b.len()],
+            best: vec![0.0; b.len()],
+            best_size: unit,
+            unit,
+            history: vec![1.0],
+            scratch: vec![0.0; m.scratch_len()],
+            products: 0,
+            without_gain: 0,
+        }
+    }
+
+    fn keep_best(&mut self, size: f64) {
+        if size < self.best_size {
+            self.best_size = size;
+            self.best.clone_from(&self.x);
+        }
+    }
+
+    /// Whether to go on after a cycle that did not meet the tolerance.
+    fn judge(&mut self, end: CycleEnd, size: f64, last: f64, params: &SolverParams) -> Result<(), SolveError> {
+        let least = if end == CycleEnd::Restart { LEAST_GAIN_RESTART } else { LEAST_GAIN };
+        self.without_gain = if size <= least * last { 0 } else { self.without_gain + 1 };
+        let residual = self.best_size / self.unit;
+        let hopeless = self.without_gain >= CYCLES_WITHOUT_GAIN;
+        let spent = end == CycleEnd::Budget || self.products >= params.max_iterations;
+        let (solver, best, iterations) = (self.name.clone(), self.best.clone(), self.products);
+        if let (CycleEnd::BreakDown(what), true) = (end, hopeless) {
+            return Err(SolveError::BreakDown { solver, what, residual, iterations, best });
+        }
+        if !hopeless && !spent {
+            return Ok(());
+        }
+        let reason = if hopeless { "the residual stagnates" } else { "the limit of products" };
+        let tolerance = params.tolerance;
+        Err(SolveError::NoConvergence { solver, reason, residual, tolerance, iterations, best })
+    }
+
+    fn info(&self, residual: f64, backward_error: f64, m: &dyn Preconditioner) -> SolveInfo {
+        let mut history = self.history.clone();
+        history.push(residual);
+        SolveInfo {
+            name: self.name.clone(),
+            iterations: self.products,
+            residual,
+            backward_error,
+            history,
+            replaced_pivots: m.replaced_pivots(),
+            condition: None,
+        }
+    }
+}

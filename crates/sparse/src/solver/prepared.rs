@@ -1,0 +1,130 @@
+//! One matrix, prepared for any number of right-hand sides.
+
+use super::direct::Factors;
+use super::krylov::{Method, iterate};
+use super::scaling::Scaled;
+use super::{AUTO_DIRECT_MAX, AUTO_RESTART, SolveError, SolveInfo, SolverKind, SolverParams};
+use crate::csr::Csr;
+use crate::error::MatrixError;
+use crate::precond::{Preconditioner, PreconditionerKind};
+
+/// Solves `A x = b` once.
+///
+/// # Errors
+/// [`SolveError`] says what is wrong with the system, or how far the method came.
+pub fn solve(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+    Prepared::new(matrix, params)?.solve(rhs)
+}
+
+/// A scaled matrix with its factors or its preconditioner.
+#[derive(Debug)]
+pub struct Prepared {
+    scaled: Scaled,
+    engine: Engine,
+    params: SolverParams,
+}
+
+#[derive(Debug)]
+enum Engine {
+    Direct(Factors),
+    Krylov(Method, Box<dyn Preconditioner>),
+}
+
+impl Prepared {
+    /// Scales the matrix and factorises it, or sets the preconditioner up.
+    ///
+    /// # Errors
+    /// [`SolveError::BadParameter`], a matrix that is not square or has an empty row, and, for the direct method,
+    /// a singular matrix or one too large to factorise.
+    pub fn new(matrix: &Csr, params: &SolverParams) -> Result<Self, SolveError> {
+        check(params)?;
+        let method = match params.kind {
+            SolverKind::Auto if matrix.nrows() <= AUTO_DIRECT_MAX => None,
+            SolverKind::Auto => Some(Method::Gmres { restart: AUTO_RESTART }),
+            SolverKind::Direct => None,
+            SolverKind::BiCgStab { l } => Some(Method::BiCgStab { l }),
+            SolverKind::Gmres { restart } => Some(Method::Gmres { restart }),
+            SolverKind::Cg => Some(Method::Cg),
+        };
+        let Some(method) = method else {
+            let (scaled, factors) = Factors::new(matrix)?;
+            return Ok(Self { scaled, engine: Engine::Direct(factors), params: *params });
+        };
+        let scaled = if method == Method::Cg {
+            Scaled::symmetric(matrix)?.ok_or_else(|| not_positive(matrix))?
+        } else {
+            Scaled::rows(matrix)?
+        };
+        let preconditioner = params.preconditioner.build(&scaled.matrix)?;
+        Ok(Self { scaled, engine: Engine::Krylov(method, preconditioner), params: *params })
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.scaled.matrix.nrows()
+    }
+
+    /// Solves for one right-hand side. For `b = 0` the answer is 0, at once.
+    ///
+    /// # Errors
+    /// [`SolveError`] says what is wrong with the right-hand side, or how far the method came.
+    pub fn solve(&self, rhs: &[f64]) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+        MatrixError::check_length("right-hand side", rhs.len(), self.n())?;
+        MatrixError::check_finite("right-hand side", rhs)?;
+        let b = self.scaled.rhs(rhs);
+        let matrix = &self.scaled.matrix;
+        let solved = match &self.engine {
+            Engine::Direct(factors) => factors.solve_refined(matrix, &b),
+            Engine::Krylov(method, m) => iterate(*method, matrix, m.as_ref(), &b, &self.params),
+        };
+        match solved {
+            Ok((x, info)) => Ok((self.scaled.unscale(x), info)),
+            Err(error) => Err(self.unscale_best(error)),
+        }
+    }
+
+    fn unscale_best(&self, mut error: SolveError) -> SolveError {
+        if let SolveError::NoConvergence { best, .. } | SolveError::BreakDown { best, .. } = &mut error {
+            *best = self.scaled.unscale(std::mem::take(best));
+        }
+        error
+    }
+}
+
+fn not_positive(matrix: &Csr) -> SolveError {
+    let diagonal = matrix.diagonal();
+    let row = diagonal.iter().position(|&d| d <= 0.0).unwrap_or(0);
+    SolveError::BadParameter {
+        what: "a diagonal entry of the matrix",
+        value: diagonal.get(row).copied().unwrap_or(f64::NAN),
+        expected: "conjugate gradients need a symmetric positive definite matrix",
+    }
+}
+
+fn check(params: &SolverParams) -> Result<(), SolveError> {
+    let bad = |what, value, expected| Err(SolveError::BadParameter { what, value, expected });
+    if !(params.tolerance > 0.0 && params.tolerance < 1.0) {
+        return bad("the tolerance", params.tolerance, "it must lie between 0 and 1");
+    }
+    if let Some(e) = params.backward_error
+        && !(e > 0.0 && e < 1.0)
+    {
+        return bad("the backward error", e, "it must lie between 0 and 1");
+    }
+    match params.kind {
+        SolverKind::BiCgStab { l } if !(1..=8).contains(&l) => {
+            return bad("the degree l of BiCGStab(l)", l as f64, "it must lie between 1 and 8");
+        }
+        SolverKind::Gmres { restart: 0 } => {
+            return bad("the restart length of GMRES", 0.0, "it must be at least 1");
+        }
+        _ => {}
+    }
+    if let PreconditionerKind::Ilut { drop, .. } = params.preconditioner
+        && !(0.0..1.0).contains(&drop)
+    {
+        return bad("the drop tolerance of ILUT", drop, "it must lie in [0, 1)");
+    }
+    Ok(())
+}
