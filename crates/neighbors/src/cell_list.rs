@@ -45,8 +45,15 @@ impl<'a, const D: usize> CellList<'a, D> {
             width *= 1.25;
         }
         let cells: [usize; D] = std::array::from_fn(|k| (extent[k] / width) as usize + 1);
-        let mut list =
-            Self { points, min, inverse: 1.0 / width, cells, starts: Vec::new(), order: Vec::new(), sorted: Vec::new() };
+        let mut list = Self {
+            points,
+            min,
+            inverse: 1.0 / width,
+            cells,
+            starts: Vec::new(),
+            order: Vec::new(),
+            sorted: Vec::new(),
+        };
         list.sort();
         Ok(list)
     }

@@ -24,7 +24,9 @@ pub enum NeighborError {
         position: Vec<f64>,
     },
     /// A point without neighbours.
-    #[error("point {index} at {position:?} has no neighbour within {radius}; a larger radius is needed there")]
+    #[error(
+        "point {index} at {position:?} has no neighbour within {radius}; a larger radius is needed there"
+    )]
     Isolated {
         /// Index of the point.
         index: usize,

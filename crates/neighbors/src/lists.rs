@@ -67,6 +67,11 @@ impl NeighborLists {
         &self.indices[self.offsets[i]..self.offsets[i + 1]]
     }
 
+    /// Offsets and indices: the neighbours of point i are `indices[offsets[i]..offsets[i + 1]]`.
+    pub fn as_csr(&self) -> (&[usize], &[u32]) {
+        (&self.offsets, &self.indices)
+    }
+
     /// The lists, point by point.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
         (0..self.len()).map(|i| self.of(i))

@@ -69,8 +69,12 @@ pub fn within_radius<const D: usize>(
     let cells = CellList::new(points, mean)?;
     let search = Search { points, radius, distance, largest, cells };
     // Searching in the order of the cells keeps the memory that is read close together.
-    let found: Vec<(Vec<u32>, Vec<u32>)> =
-        search.cells.order().par_chunks(POINTS_PER_TASK).map(|task| search.run(task)).collect::<Result<_, _>>()?;
+    let found: Vec<(Vec<u32>, Vec<u32>)> = search
+        .cells
+        .order()
+        .par_chunks(POINTS_PER_TASK)
+        .map(|task| search.run(task))
+        .collect::<Result<_, _>>()?;
     Ok(search.gather(&found))
 }
 
@@ -95,11 +99,19 @@ impl<const D: usize> Search<'_, D> {
             if let Some((squared, j)) = nearest {
                 if squared <= (COINCIDENCE * own).powi(2) {
                     let (first, second) = (i.min(j) as usize, i.max(j) as usize);
-                    return Err(NeighborError::Duplicate { first, second, position: self.points[first].to_vec() });
+                    return Err(NeighborError::Duplicate {
+                        first,
+                        second,
+                        position: self.points[first].to_vec(),
+                    });
                 }
             } else {
                 let index = i as usize;
-                return Err(NeighborError::Isolated { index, position: self.points[index].to_vec(), radius: own });
+                return Err(NeighborError::Isolated {
+                    index,
+                    position: self.points[index].to_vec(),
+                    radius: own,
+                });
             }
             counts.push(count as u32);
         }
@@ -139,7 +151,11 @@ impl<const D: usize> Search<'_, D> {
         let n = self.points.len();
         let mut offsets = vec![0_usize; n + 1];
         let counts = found.iter().flat_map(|(counts, _)| counts);
-        self.cells.order().iter().zip(counts).for_each(|(&i, &count)| offsets[i as usize + 1] = count as usize);
+        self.cells
+            .order()
+            .iter()
+            .zip(counts)
+            .for_each(|(&i, &count)| offsets[i as usize + 1] = count as usize);
         for i in 0..n {
             offsets[i + 1] += offsets[i];
         }

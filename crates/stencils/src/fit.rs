@@ -1,7 +1,6 @@
 //! The local fit: one factorisation for all operators of a node.
 
-use crate::qr::Qr;
-use crate::{Functional, Monomials, StencilError};
+use crate::{FitScratch, Functional, Monomials, StencilError};
 
 /// A reproduction condition that is violated by more than this, relative to the largest moment, is not met.
 pub const REPRODUCTION_TOLERANCE: f64 = 1e-8;
@@ -33,16 +32,6 @@ pub struct LocalFit<const D: usize> {
     monomials: Monomials<D>,
 }
 
-/// Memory of one thread.
-#[derive(Debug, Clone)]
-pub struct FitScratch<const D: usize> {
-    qr: Qr,
-    weights: Vec<f64>,
-    moments: Vec<f64>,
-    z: Vec<f64>,
-    radius: f64,
-}
-
 /// What the factorisation of a support says about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitDiagnosis {
@@ -67,16 +56,7 @@ impl<const D: usize> LocalFit<D> {
 
     /// Memory for supports of up to `max_points` points; larger ones work and make it grow.
     pub fn scratch(&self, max_points: usize) -> FitScratch<D> {
-        let m = self.monomials.count();
-        let mut qr = Qr::default();
-        qr.resize(max_points.max(1), m);
-        FitScratch {
-            qr,
-            weights: Vec::with_capacity(max_points),
-            moments: vec![0.0; m],
-            z: vec![0.0; m],
-            radius: 1.0,
-        }
+        FitScratch::new(max_points, self.monomials.count())
     }
 
     /// Factors the fit over points at `offsets` from the centre, with positive `weights`, in units of `radius`.
@@ -120,13 +100,15 @@ impl<const D: usize> LocalFit<D> {
     /// Coefficients of an operator, one for each offset, in physical units.
     ///
     /// # Errors
-    /// [`StencilError::Unresolvable`] where the support does not determine the operator.
+    /// [`StencilError::Unresolvable`] where the support does not determine the operator, and
+    /// [`StencilError::DegreeTooLow`] where no support of this fit could.
     pub fn coefficients(
         &self,
         functional: &Functional<D>,
         scratch: &mut FitScratch<D>,
         out: &mut [f64],
     ) -> Result<(), StencilError> {
+        functional.check(self.params.degree)?;
         let mut moments = std::mem::take(&mut scratch.moments);
         functional.moments(&self.monomials, scratch.radius, &mut moments);
         let outcome = self.coefficients_for(&moments, scratch, out);

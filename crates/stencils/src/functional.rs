@@ -1,6 +1,6 @@
 //! Linear functionals of a function near a point.
 
-use crate::Monomials;
+use crate::{Monomials, StencilError};
 
 /// What a stencil approximates; in physical units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,33 @@ pub enum Functional<const D: usize> {
 }
 
 impl<const D: usize> Functional<D> {
+    /// The highest order of the derivatives in it.
+    pub fn order(&self) -> usize {
+        match self {
+            Self::Value | Self::ValueAt(_) => 0,
+            Self::Partial(_) | Self::Directional(_) => 1,
+            Self::Second(..) | Self::Laplacian | Self::Diffusion { .. } => 2,
+            Self::Derivative(orders) => orders.iter().map(|&o| usize::from(o)).sum(),
+        }
+    }
+
+    /// Whether polynomials to `degree` in D variables say anything about it.
+    pub(crate) fn check(&self, degree: usize) -> Result<(), StencilError> {
+        let axis = match *self {
+            Self::Partial(axis) => axis,
+            Self::Second(a, b) => a.max(b),
+            _ => 0,
+        };
+        if axis >= D {
+            return Err(StencilError::NoSuchAxis { functional: format!("{self:?}"), dimension: D });
+        }
+        if self.order() > degree {
+            let functional = format!("{self:?}");
+            return Err(StencilError::DegreeTooLow { functional, order: self.order(), degree });
+        }
+        Ok(())
+    }
+
     /// Moments of the functional: its values on the monomials of `(x - centre) / radius`.
     pub(crate) fn moments(&self, monomials: &Monomials<D>, radius: f64, out: &mut [f64]) {
         out.fill(0.0);

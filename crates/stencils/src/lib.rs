@@ -34,11 +34,15 @@ mod fit;
 mod functional;
 mod monomials;
 mod qr;
+mod scratch;
+mod set;
 mod weight;
 
-pub use diagnosis::{StencilDiagnosis, diagnose};
+pub use diagnosis::{SignDiagnosis, StencilDiagnosis};
 pub use error::StencilError;
-pub use fit::{FitDiagnosis, FitParams, FitScratch, LocalFit, REPRODUCTION_TOLERANCE};
+pub use fit::{FitDiagnosis, FitParams, LocalFit, REPRODUCTION_TOLERANCE};
 pub use functional::Functional;
 pub use monomials::Monomials;
+pub use scratch::FitScratch;
+pub use set::{StencilSet, build_stencils};
 pub use weight::Weight;

@@ -85,7 +85,8 @@ impl Qr {
                 let column = &self.a[j * self.rows + k..(j + 1) * self.rows];
                 self.norms[j] = column.iter().map(|x| x * x).sum::<f64>();
             }
-            let pivot = (k..self.columns).fold(k, |best, j| if self.norms[j] > self.norms[best] { j } else { best });
+            let pivot =
+                (k..self.columns).fold(k, |best, j| if self.norms[j] > self.norms[best] { j } else { best });
             let norm = self.norms[pivot].sqrt();
             largest = largest.max(norm);
             if norm <= tolerance * largest || norm == 0.0 {
