@@ -1,7 +1,8 @@
 //! Boundary conditions on the flux by collocation: `a u + b eta du/dn = g` at the node.
 
-use meshless_stencils::{Functional, Weight};
+use meshless_stencils::{Functional, StencilError, Weight};
 
+use crate::gfdm::strong::add_correction;
 use crate::local::{NodeFit, enlarged_support};
 use crate::problem::Condition;
 use crate::{MethodError, Problem};
@@ -47,19 +48,39 @@ pub(super) fn collocate<const D: usize>(problem: &Problem<'_, D>, index: usize) 
         direction.iter_mut().zip(touch.normal).for_each(|(d, n)| *d += n);
     }
     let fit = NodeFit::new(DEGREE, Weight::Exponential);
-    let mut neighbors = problem.supports.lists.of(i).to_vec();
-    let mut scratch = fit.scratch(neighbors.len());
-    let factored = fit.factor(problem, i, &neighbors, &mut scratch);
-    let mut coefficients = vec![0.0; neighbors.len()];
-    let functional = Functional::Directional(direction);
-    if factored.and_then(|()| fit.coefficients(&functional, &mut scratch, &mut coefficients)).is_err() {
-        let located = |source| MethodError::stencil(i, &problem.cloud.points()[i], source);
-        neighbors = enlarged_support(problem, i);
-        scratch = fit.scratch(neighbors.len());
-        fit.factor(problem, i, &neighbors, &mut scratch).map_err(located)?;
-        coefficients = vec![0.0; neighbors.len()];
-        fit.coefficients(&functional, &mut scratch, &mut coefficients).map_err(located)?;
+    let inward = Functional::Directional(direction.map(|d| -d));
+    let supports = [problem.supports.lists.of(i).to_vec(), enlarged_support(problem, i)];
+    let mut failure = None;
+    for neighbors in supports {
+        match inward_derivative(problem, &fit, i, &neighbors, &inward) {
+            Ok(mut coefficients) => {
+                coefficients.iter_mut().for_each(|c| *c *= -problem.eta[i]);
+                return Ok(BoundaryRow { neighbors, coefficients, row_sum, rhs });
+            }
+            Err(error) => failure = Some(error),
+        }
     }
-    coefficients.iter_mut().for_each(|c| *c *= problem.eta[i]);
-    Ok(BoundaryRow { neighbors, coefficients, row_sum, rhs })
+    Err(failure.map_or_else(
+        || MethodError::NoCondition { node: i, position: position() },
+        |source| MethodError::stencil(i, &problem.cloud.points()[i], source),
+    ))
+}
+
+/// Coefficients of the derivative into the domain, corrected towards diagonal dominance like those of the equation:
+/// one-sided stencils without the correction make the system nearly singular in three dimensions.
+fn inward_derivative<const D: usize>(
+    problem: &Problem<'_, D>,
+    fit: &NodeFit<D>,
+    i: usize,
+    neighbors: &[u32],
+    inward: &Functional<D>,
+) -> Result<Vec<f64>, StencilError> {
+    let mut scratch = fit.scratch(neighbors.len());
+    fit.factor(problem, i, neighbors, &mut scratch)?;
+    let mut coefficients = vec![0.0; neighbors.len()];
+    fit.coefficients(inward, &mut scratch, &mut coefficients)?;
+    let mut xi = vec![0.0; neighbors.len()];
+    fit.correction(&mut scratch, &mut xi)?;
+    add_correction(&mut coefficients, &xi);
+    Ok(coefficients)
 }
