@@ -96,24 +96,26 @@ impl Claims {
         measured: Option<f64>,
         band: [f64; 2],
     ) {
-        let [low, high] = band;
-        let expected = format!("{} … {}", short(low), short(high));
-        self.judge(case, claim.into(), expected, measured, |m| (low..=high).contains(&m), None);
+        self.judge(case, claim.into(), range(band), measured, |m| (band[0]..=band[1]).contains(&m), None);
     }
 
-    /// A claim of others that we measure otherwise: `expected` is theirs; ours must stay in `band`, so that the row can
-    /// still fail, and `why` says what the difference comes from.
+    /// A claim of a paper that we may measure otherwise: it holds within `paper`; else it counts as explained by `why`
+    /// as long as our figure stays within `ours`, so that the row can still fail.
     pub(crate) fn explained(
         &mut self,
         case: &'static str,
         claim: impl Into<String>,
-        expected: &str,
         measured: Option<f64>,
-        band: [f64; 2],
+        paper: [f64; 2],
+        ours: [f64; 2],
         why: &'static str,
     ) {
-        let expected = format!("{expected}; here {} … {}", short(band[0]), short(band[1]));
-        self.judge(case, claim.into(), expected, measured, |m| (band[0]..=band[1]).contains(&m), Some(why));
+        let within = |band: [f64; 2]| measured.is_some_and(|m| (band[0]..=band[1]).contains(&m));
+        if within(paper) {
+            return self.judge(case, claim.into(), range(paper), measured, |_| true, None);
+        }
+        let expected = format!("{}; here {}", range(paper), range(ours));
+        self.judge(case, claim.into(), expected, measured, |_| within(ours), Some(why));
     }
 
     /// The rows in the order of the cases, those about no single case last.
@@ -145,6 +147,15 @@ impl Claims {
     }
 }
 
+/// A band in words; infinite ends are left out.
+fn range([low, high]: [f64; 2]) -> String {
+    match (low.is_finite(), high.is_finite()) {
+        (true, false) => format!("≥ {}", short(low)),
+        (false, true) => format!("≤ {}", short(high)),
+        _ => format!("{} … {}", short(low), short(high)),
+    }
+}
+
 /// A number as it is read in a table.
 pub(crate) fn short(x: f64) -> String {
     if x == 0.0 || x.fract() == 0.0 && x.abs() < 1e4 {
@@ -171,12 +182,23 @@ mod tests {
     }
 
     #[test]
-    fn an_explained_claim_can_fail_too() {
+    fn an_explained_claim_may_hold_and_can_fail() {
         let mut claims = Claims::new("s", false);
-        claims.explained("c", "first order", "1", Some(0.5), [0.4, 0.6], "the cloud differs");
-        claims.explained("c", "first order", "1", Some(0.9), [0.4, 0.6], "the cloud differs");
-        assert_eq!(claims.list[0].verdict, Verdict::Explained("the cloud differs"));
-        assert_eq!(claims.list[1].verdict, Verdict::Fails);
+        for order in [1.0, 0.5, 0.3, f64::NAN] {
+            claims.explained(
+                "c",
+                "order",
+                Some(order),
+                [0.9, f64::INFINITY],
+                [0.4, 0.9],
+                "the cloud differs",
+            );
+        }
+        let verdicts: Vec<Verdict> = claims.list.iter().map(|c| c.verdict).collect();
+        let expected =
+            [Verdict::Holds, Verdict::Explained("the cloud differs"), Verdict::Fails, Verdict::Fails];
+        assert_eq!(verdicts, expected);
+        assert_eq!(claims.list[0].expected, "≥ 0.900");
     }
 
     #[test]

@@ -82,7 +82,7 @@ fn check(runner: &Runner<'_>, finest: usize, claims: &mut Claims) {
         CASES[0],
         "error of the strong form over that of the hybrid, finest cloud",
         accuracy,
-        100.0,
+        10.0,
     );
     if runner.options.effort > Effort::Quick {
         let longer = pair.map(|(hybrid, strong)| hybrid.row.t_total / strong.row.t_total);

@@ -55,7 +55,7 @@ const FAMILIES: [Family; 6] = [
         jumps: &[1e-10, 1e-6, 1e-2, 1e2, 1e6, 1e10, 1e12],
         seeds: &[1],
         grid: false,
-        limit: 1e-2,
+        limit: 2e-2,
     },
     Family {
         case: "seeds",
@@ -103,7 +103,7 @@ const FAMILIES: [Family; 6] = [
         jumps: &[1e2, 1e6, 1e10, 1e12],
         seeds: &[1],
         grid: false,
-        limit: 1e-2,
+        limit: 2e-2,
     },
     Family {
         case: "l-shape",
