@@ -8,3 +8,8 @@ pub mod order;
 pub mod small;
 pub mod smooth;
 pub mod solve;
+
+/// The Rust blocks of the README are doctests of this package.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
