@@ -47,7 +47,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         effects: plan.effects.iter().map(|e| e.name()).collect(),
         method: plan.method.name.as_str(),
         why: &plan.method.why,
-        solver: plan.solver.name(),
+        solver: plan.solver_name(),
         stages: plan.stages.iter().map(|s| s.name()).collect(),
         skipped: plan.skipped.iter().map(|s| SkippedJson { what: s.what, why: s.why }).collect(),
         predicted: PredictedJson {

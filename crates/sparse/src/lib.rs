@@ -27,26 +27,25 @@
 //! # Ok::<(), meshless_sparse::SolveError>(())
 //! ```
 
-mod bordered;
-mod clusters;
 mod csr;
 mod difference;
-mod direct;
 mod error;
-mod ilu;
-mod krylov;
-mod preconditioner;
-mod prepared;
-mod solve_error;
-mod split;
+mod floating;
+mod market;
+mod precond;
+mod solver;
 mod vector;
 
-pub use bordered::Bordered;
-pub use clusters::{Cluster, ComponentInfo, FLOATING_THRESHOLD, floating_clusters};
 pub use csr::{Csr, RowBuilder};
 pub use difference::{DifferenceMatrix, MatrixReport, Reduced, WrongSign};
 pub use error::MatrixError;
-pub use preconditioner::{Preconditioner, PreconditionerKind};
-pub use prepared::{Prepared, SolveInfo, SolverKind, SolverParams};
-pub use solve_error::SolveError;
-pub use split::{Split, solve_up_to_constant};
+pub use floating::{
+    Bordered, BorderedSolution, ChainLink, Cluster, ComponentInfo, DEFAULT_THRESHOLD, GroupUnknowns, NeumannSolution,
+    Split, clusters, pure_neumann,
+};
+pub use market::{MarketError, read_matrix_market, write_matrix_market};
+pub use precond::{IncompleteLu, Jacobi, Preconditioner, PreconditionerKind, ilu0, ilut};
+pub use solver::{
+    AUTO_DIRECT_MAX, AUTO_RESTART, DEFAULT_TOLERANCE, LinearOperator, Prepared, SolveError, SolveInfo, SolverKind,
+    SolverParams, solve,
+};

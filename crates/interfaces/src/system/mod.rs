@@ -2,7 +2,7 @@
 
 mod floating;
 
-use meshless_sparse::{Prepared, SolveInfo, SolverParams, Split, solve_up_to_constant};
+use meshless_sparse::{SolveInfo, SolverParams, Split, pure_neumann};
 
 use crate::{Discretization, MethodError, Problem};
 
@@ -53,13 +53,19 @@ pub fn solve<const D: usize>(
     }
     let known = problem.dirichlet();
     let reduced = discretization.rows.eliminate(&known, &discretization.rhs)?;
-    let split = if params.split_floating { floating::split(problem, &reduced)? } else { None };
+    let split = match params.split_floating {
+        true => floating::split(problem, &reduced.matrix, &reduced.map)?,
+        false => None,
+    };
     let (solution, info) = match &split {
-        Some(split) => split.solve(&reduced.matrix, &reduced.rhs, &params.solver)?,
-        None => Prepared::new(&reduced.matrix.to_csr(), &params.solver)?.solve(&reduced.rhs)?,
+        Some(split) => {
+            let solved = split.apply(&reduced.matrix, &reduced.rhs)?.solve(&params.solver)?;
+            (split.recover(&solved.values, &solved.extra)?, solved.info)
+        }
+        None => meshless_sparse::solve(&reduced.matrix.to_csr(), &reduced.rhs, &params.solver)?,
     };
     let u = reduced.expand(&solution, &known)?;
-    let floating_constants = split.as_ref().map_or(0, |s: &Split| s.pins.len());
+    let floating_constants = split.as_ref().map_or(0, Split::extra);
     Ok(SystemSolution { u, info, floating_constants, up_to_constant: false })
 }
 
@@ -68,7 +74,8 @@ fn solve_unanchored(discretization: &Discretization, params: &SystemParams) -> R
     let (rows, rhs, volumes) = (&discretization.rows, &discretization.rhs, &discretization.volumes);
     let size: f64 = rhs.iter().map(|b| b.abs()).sum();
     let pin = rhs.len() / 2;
-    let (mut u, lambda, info) = solve_up_to_constant(rows, rhs, volumes, pin, &params.solver)?;
+    let solved = pure_neumann(rows, rhs, volumes, pin, &params.solver)?;
+    let (mut u, lambda, info) = (solved.values, solved.lambda, solved.info);
     let total: f64 = volumes.iter().sum();
     let defect = if size > 0.0 { (lambda * total / size).abs() } else { 0.0 };
     if !(defect <= COMPATIBILITY) {

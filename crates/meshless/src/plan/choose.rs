@@ -13,7 +13,7 @@ use crate::scene::{MethodName, Scene, SolverName};
 const SUPPORT: [f64; 3] = [3.1, 2.9, 2.2];
 
 /// Unknowns up to which the direct solver is faster than the Krylov solver, by dimension; see `docs/sparse.md`.
-const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 20_000.0, 4_000.0];
+const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 150_000.0, 1_500.0];
 
 /// Relative true residual at which the Krylov solver stops.
 const TOLERANCE: f64 = 1e-11;

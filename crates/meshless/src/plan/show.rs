@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use meshless_sparse::SolverKind;
+
 use super::{Plan, Stage};
 
 impl Stage {
@@ -30,13 +32,25 @@ impl Stage {
     }
 }
 
+impl Plan {
+    /// The linear solver in words.
+    pub fn solver_name(&self) -> String {
+        let preconditioner = self.solver.preconditioner.name();
+        match self.solver.kind {
+            SolverKind::BiCgStab { l } => format!("bicgstab({l}) + {preconditioner}"),
+            SolverKind::Gmres { restart } => format!("gmres({restart}) + {preconditioner}"),
+            _ => "direct".to_owned(),
+        }
+    }
+}
+
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "dimension   {}", self.dimension)?;
         let effects: Vec<String> = self.effects.iter().map(ToString::to_string).collect();
         writeln!(f, "effects     {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") })?;
         writeln!(f, "method      {} ({})", self.method.name.as_str(), self.method.why)?;
-        writeln!(f, "solver      {}", self.solver.name())?;
+        writeln!(f, "solver      {}", self.solver_name())?;
         let stages: Vec<&str> = self.stages.iter().map(|s| s.name()).collect();
         writeln!(f, "stages      {}", stages.join(" -> "))?;
         for skipped in &self.skipped {

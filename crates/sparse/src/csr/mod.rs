@@ -6,7 +6,7 @@ mod transform;
 
 pub use build::RowBuilder;
 pub(crate) use build::build_rows;
-pub(crate) use product::{ROWS_PER_TASK, for_each_row};
+pub(crate) use product::for_each_row;
 
 use crate::error::MatrixError;
 use sprs::CsMatViewI;

@@ -53,6 +53,17 @@ pub enum PreconditionerKind {
 }
 
 impl PreconditionerKind {
+    /// The name used in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Jacobi => "Jacobi",
+            Self::Ilu0 => "ILU(0)",
+            Self::Ilut { .. } => "ILUT",
+        }
+    }
+
     /// Sets the preconditioner up.
     ///
     /// # Errors
