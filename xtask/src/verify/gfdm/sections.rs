@@ -6,7 +6,7 @@ use meshless_output::Profile;
 use super::cases::{CASES, Case};
 use super::sweep::{CLAIMED, SEED};
 use super::tables::{self, Fractions, Iterations};
-use super::view::View;
+use super::view::{EXACT, View};
 use super::{HYBRID, POSITIVE, STRONG, Variant, radius};
 use crate::verify::figure::{Curve, Figure};
 use crate::verify::runner::{self, Extra, Runner};
@@ -100,8 +100,11 @@ fn shown_variants(case: &Case) -> Vec<Variant> {
 
 fn over_jumps(view: &View<'_>, case: &Case, level: usize) -> Vec<Curve> {
     let curve = |variant: Variant| {
-        let mut points: Vec<(f64, f64)> =
-            view.of(variant).filter(|o| o.key.level == level).map(|o| (o.key.jump, o.l2())).collect();
+        let mut points: Vec<(f64, f64)> = view
+            .of(variant)
+            .filter(|o| o.key.level == level && o.l2() > EXACT)
+            .map(|o| (o.key.jump, o.l2()))
+            .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         Curve { label: variant.label(), points }
     };
