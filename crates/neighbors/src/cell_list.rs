@@ -1,164 +1,140 @@
-//! A grid of cells over a cloud, for queries by radius.
+//! An index of a cloud, for queries around any position.
 
 use crate::NeighborError;
+use crate::check::{check_points, squared_distance};
+use crate::grid::GridTree;
 
-/// Cells a search radius is wide: narrow cells are scanned in longer runs, but hold fewer points that do not count.
-const CELLS_PER_RADIUS: f64 = 2.0;
+/// Width of the cells in search radii: narrower cells hold fewer points that do not count, but there are more of them.
+pub(crate) const CELL_WIDTH: f64 = 0.5;
 
-/// Cells for each point at the most; a cloud that is far from filling its box has wider cells.
-const MAX_CELLS_PER_POINT: f64 = 4.0;
-
-/// Points sorted into cells; answers which points lie within a radius of any position.
+/// Points sorted into cells; answers which points are near any position, a point of the cloud or not.
+///
+/// Crowded cells are divided again, so that clouds of strongly varying density are searched as fast as others.
+/// Nothing is found around a position that is not finite.
 #[derive(Debug, Clone)]
 pub struct CellList<'a, const D: usize> {
     points: &'a [[f64; D]],
-    min: [f64; D],
-    inverse: f64,
-    cells: [usize; D],
-    /// First sorted point of every cell; one more than there are cells.
-    starts: Vec<u32>,
-    /// Indices of the points, cell by cell.
-    order: Vec<u32>,
-    /// The points in that order, side by side in memory.
-    sorted: Vec<[f64; D]>,
+    tree: GridTree<D>,
 }
 
 impl<'a, const D: usize> CellList<'a, D> {
-    /// Sorts the points for queries with radii around `radius`; other radii work, more slowly.
+    /// Sorts the points; cells suit queries with radii around `radius`, but any radius will do.
     ///
     /// # Errors
     /// A point that is not finite, or more points than indices can count.
     pub fn new(points: &'a [[f64; D]], radius: f64) -> Result<Self, NeighborError> {
         check_points(points)?;
-        let (mut min, mut max) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-        for point in points {
-            for k in 0..D {
-                min[k] = min[k].min(point[k]);
-                max[k] = max[k].max(point[k]);
-            }
-        }
-        let extent: [f64; D] = std::array::from_fn(|k| (max[k] - min[k]).max(0.0));
-        let mut width = if radius > 0.0 && radius.is_finite() { radius / CELLS_PER_RADIUS } else { 1.0 };
-        let count = |width: f64| extent.iter().map(|e| (e / width).floor() + 1.0).product::<f64>();
-        let limit = MAX_CELLS_PER_POINT * points.len() as f64 + 16.0;
-        while count(width) > limit {
-            width *= 1.25;
-        }
-        let cells: [usize; D] = std::array::from_fn(|k| (extent[k] / width) as usize + 1);
-        let mut list = Self {
-            points,
-            min,
-            inverse: 1.0 / width,
-            cells,
-            starts: Vec::new(),
-            order: Vec::new(),
-            sorted: Vec::new(),
-        };
-        list.sort();
-        Ok(list)
+        let width = if radius.is_finite() { (CELL_WIDTH * radius).max(0.0) } else { 0.0 };
+        Ok(Self { points, tree: GridTree::new(points, width) })
     }
 
-    /// Counting sort of the points by cell; within a cell they keep their order.
-    fn sort(&mut self) {
-        let total = self.cells.iter().product::<usize>();
-        let of_point: Vec<u32> = self.points.iter().map(|x| self.cell_of(x) as u32).collect();
-        let mut starts = vec![0_u32; total + 1];
-        of_point.iter().for_each(|&cell| starts[cell as usize + 1] += 1);
-        for cell in 0..total {
-            starts[cell + 1] += starts[cell];
-        }
-        let mut next = starts.clone();
-        self.order = vec![0; self.points.len()];
-        for (i, &cell) in of_point.iter().enumerate() {
-            self.order[next[cell as usize] as usize] = i as u32;
-            next[cell as usize] += 1;
-        }
-        self.sorted = self.order.iter().map(|&i| self.points[i as usize]).collect();
-        self.starts = starts;
+    /// The points that are indexed.
+    pub fn points(&self) -> &'a [[f64; D]] {
+        self.points
     }
 
-    fn axis_cell(&self, axis: usize, x: f64) -> usize {
-        // A cast of a negative number or of NaN gives 0.
-        (((x - self.min[axis]) * self.inverse) as usize).min(self.cells[axis] - 1)
-    }
-
-    fn cell_of(&self, x: &[f64; D]) -> usize {
-        (0..D).rev().fold(0, |index, k| index * self.cells[k] + self.axis_cell(k, x[k]))
-    }
-
-    /// Positions in cell order.
-    pub(crate) fn order(&self) -> &[u32] {
-        &self.order
-    }
-
-    /// Calls `visit(index, squared distance)` for every point within `radius` of `center` (and at it).
-    pub(crate) fn visit(&self, center: &[f64; D], radius: f64, mut visit: impl FnMut(u32, f64)) {
-        let squared_radius = radius * radius;
-        let low: [usize; D] = std::array::from_fn(|k| self.axis_cell(k, center[k] - radius));
-        let high: [usize; D] = std::array::from_fn(|k| self.axis_cell(k, center[k] + radius));
-        let mut cell = low;
-        loop {
-            // Cells along the first axis follow each other in memory: one run.
-            let row = (1..D).rev().fold(0, |index, k| (index + cell[k]) * self.cells[k - 1]);
-            let (from, to) = (self.starts[row + low[0]] as usize, self.starts[row + high[0] + 1] as usize);
-            for (point, &index) in self.sorted[from..to].iter().zip(&self.order[from..to]) {
-                let mut squared = 0.0;
-                for k in 0..D {
-                    let d = point[k] - center[k];
-                    squared += d * d;
-                }
-                if squared <= squared_radius {
-                    visit(index, squared);
-                }
-            }
-            let mut axis = 1;
-            loop {
-                if axis >= D {
-                    return;
-                }
-                if cell[axis] < high[axis] {
-                    cell[axis] += 1;
-                    break;
-                }
-                cell[axis] = low[axis];
-                axis += 1;
-            }
-        }
-    }
-
-    /// Appends the points within `radius` of `center` to `found`, in the order of the cells.
+    /// Appends the points within `radius` of `center` (and at it) to `found`, by ascending index.
     pub fn within(&self, center: &[f64; D], radius: f64, found: &mut Vec<u32>) {
+        let before = found.len();
         self.visit(center, radius, |index, _| found.push(index));
+        found[before..].sort_unstable();
     }
 
-    /// The point nearest to `center`, the lower index of two that are as near; `None` where there are no points.
+    /// The point nearest to `center`, the one of lowest index where several are as near; `None` if there are no points.
     pub fn nearest_one(&self, center: &[f64; D]) -> Option<u32> {
-        if self.points.is_empty() || center.iter().any(|x| !x.is_finite()) {
-            return None;
-        }
-        let mut radius = 1.0 / self.inverse;
-        loop {
-            let mut best: Option<(f64, u32)> = None;
-            self.visit(center, radius, |index, squared| {
+        let mut best: Option<(f64, u32)> = None;
+        self.widen(center, |list, radius| {
+            list.visit(center, radius, |index, squared| {
                 if best.is_none_or(|(s, i)| squared < s || (squared == s && index < i)) {
                     best = Some((squared, index));
                 }
             });
-            if let Some((_, index)) = best {
-                return Some(index);
-            }
+            best.is_some()
+        });
+        best.map(|(_, index)| index)
+    }
+
+    /// The k points nearest to `center` (and at it), by distance and, where that is the same, by index; all points if
+    /// there are fewer than k.
+    ///
+    /// `found` is memory to be used again; it holds squared distances and indices.
+    pub fn nearest<'b>(
+        &self,
+        center: &[f64; D],
+        k: usize,
+        found: &'b mut Vec<(f64, u32)>,
+    ) -> impl ExactSizeIterator<Item = u32> + use<'b, D> {
+        let k = k.min(self.points.len());
+        found.clear();
+        if k > 0 {
+            self.widen(center, |list, radius| {
+                found.clear();
+                list.visit(center, radius, |index, squared| found.push((squared, index)));
+                found.len() >= k
+            });
+        }
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.truncate(k);
+        found.iter().map(|&(_, index)| index)
+    }
+
+    /// Tries growing radii until one is enough; none is tried where nothing can be found.
+    fn widen(&self, center: &[f64; D], mut enough: impl FnMut(&Self, f64) -> bool) {
+        if self.points.is_empty() || center.iter().any(|x| !x.is_finite()) {
+            return;
+        }
+        let mut radius = self.tree.distance_to(center) + self.tree.width_at(center);
+        while !enough(self, radius) && radius.is_finite() {
             radius *= 2.0;
         }
     }
+
+    /// Calls `visit(index, squared distance)` for every point within `radius` of `center`.
+    fn visit(&self, center: &[f64; D], radius: f64, mut visit: impl FnMut(u32, f64)) {
+        let in_reach = radius >= 0.0 && center.iter().all(|x| x.is_finite()) && !self.points.is_empty();
+        if !in_reach {
+            return;
+        }
+        let squared_radius = radius * radius;
+        let (order, sorted) = (self.tree.order(), self.tree.sorted());
+        self.tree.runs(center, radius, &mut |run| {
+            for (&index, point) in order[run.clone()].iter().zip(&sorted[run]) {
+                let squared = squared_distance(point, center);
+                if squared <= squared_radius {
+                    visit(index, squared);
+                }
+            }
+        });
+    }
 }
 
-/// Points must be finite and countable.
-pub(crate) fn check_points<const D: usize>(points: &[[f64; D]]) -> Result<(), NeighborError> {
-    if points.len() >= u32::MAX as usize {
-        return Err(NeighborError::TooManyPoints { points: points.len() });
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_far_away_or_not_finite_are_no_trouble() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
+        let list = CellList::new(&points, 0.5).unwrap();
+        assert_eq!(list.nearest_one(&[1e300, 1e300]), Some(0), "squares overflow: all are as far");
+        assert_eq!(list.nearest_one(&[1e9, 2e9]), Some(2));
+        assert_eq!(list.nearest_one(&[f64::NAN, 0.0]), None);
+        let mut found = vec![7];
+        list.within(&[0.5, 0.0], f64::NAN, &mut found);
+        list.within(&[0.5, 0.0], -1.0, &mut found);
+        assert_eq!(found, [7]);
+        list.within(&[0.5, 0.0], f64::INFINITY, &mut found);
+        assert_eq!(found, [7, 0, 1, 2]);
     }
-    match points.iter().position(|x| x.iter().any(|c| !c.is_finite())) {
-        Some(index) => Err(NeighborError::NotFinite { index, position: points[index].to_vec() }),
-        None => Ok(()),
+
+    #[test]
+    fn no_points_and_one_place() {
+        let list = CellList::<2>::new(&[], 1.0).unwrap();
+        assert_eq!(list.nearest_one(&[0.0, 0.0]), None);
+        assert_eq!(list.nearest(&[0.0, 0.0], 3, &mut Vec::new()).count(), 0);
+        let points = [[2.0]; 100];
+        let list = CellList::new(&points, 0.0).unwrap();
+        assert_eq!(list.nearest_one(&[3.0]), Some(0));
+        assert_eq!(list.nearest(&[3.0], 3, &mut Vec::new()).collect::<Vec<_>>(), [0, 1, 2]);
     }
 }

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::radius::RADII;
+
 /// Why there are no neighbour lists.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NeighborError {
@@ -20,23 +22,30 @@ pub enum NeighborError {
         first: usize,
         /// The higher index.
         second: usize,
-        /// Their coordinates.
+        /// Coordinates of the first.
         position: Vec<f64>,
     },
-    /// A point without neighbours.
+    /// A point with fewer neighbours than are needed.
     #[error(
-        "point {index} at {position:?} has no neighbour within {radius}; a larger radius is needed there"
+        "point {index} at {position:?} has {found} neighbours within its radius {radius}, but {asked} are needed; a \
+         radius of {sufficient} would be enough there"
     )]
-    Isolated {
+    TooFewNeighbors {
         /// Index of the point.
         index: usize,
         /// Its coordinates.
         position: Vec<f64>,
         /// Its radius.
         radius: f64,
+        /// Neighbours it has.
+        found: usize,
+        /// Neighbours it should have.
+        asked: usize,
+        /// The smallest radius of this point with which it would have them, all other radii being as they are.
+        sufficient: f64,
     },
-    /// A radius that is not positive and finite.
-    #[error("the radius of point {index} is {radius}; it must be positive and finite")]
+    /// A radius with which no distances can be compared: not positive, not finite, or with a square that is not.
+    #[error("the radius of point {index} is {radius}; it must be between {:e} and {:e}", RADII.start(), RADII.end())]
     InvalidRadius {
         /// Index of the point.
         index: usize,
@@ -52,7 +61,7 @@ pub enum NeighborError {
         points: usize,
     },
     /// Fewer points than neighbours asked for.
-    #[error("{asked} neighbours asked for, but there are only {points} points")]
+    #[error("{asked} neighbours asked for each of {points} points: there must be more points")]
     TooFewPoints {
         /// Neighbours asked for.
         asked: usize,
@@ -60,7 +69,7 @@ pub enum NeighborError {
         points: usize,
     },
     /// More points than indices can count.
-    #[error("{points} points; lists hold at most 4294967295")]
+    #[error("{points} points; indices count fewer than {}", u32::MAX)]
     TooManyPoints {
         /// Number of points.
         points: usize,

@@ -20,13 +20,16 @@
 //! ```
 
 mod cell_list;
+mod check;
 mod error;
+mod grid;
 mod lists;
 mod nearest;
 mod radius;
+mod search;
 
 pub use cell_list::CellList;
 pub use error::NeighborError;
 pub use lists::NeighborLists;
 pub use nearest::nearest;
-pub use radius::{COINCIDENCE, Distance, Radius, within_radius};
+pub use radius::{COINCIDENCE, Distance, Radius, require_neighbors, within_radius};

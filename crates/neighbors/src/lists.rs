@@ -3,6 +3,9 @@
 use crate::NeighborError;
 
 /// The neighbours of every point, compressed: no point is its own neighbour, none is listed twice.
+///
+/// Lists by radius are in the order of ascending index, lists by number in that of distance; lists from outside keep
+/// their order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NeighborLists {
     offsets: Vec<usize>,
@@ -11,6 +14,9 @@ pub struct NeighborLists {
 
 impl NeighborLists {
     /// From one list a point.
+    ///
+    /// # Errors
+    /// [`NeighborError::InvalidLists`] where a list names its own point, a point twice, or one that does not exist.
     pub fn from_lists(lists: Vec<Vec<u32>>) -> Result<Self, NeighborError> {
         let mut offsets = Vec::with_capacity(lists.len() + 1);
         offsets.push(0);
@@ -21,6 +27,9 @@ impl NeighborLists {
     }
 
     /// From offsets (one more than there are points) and indices; all invariants are checked.
+    ///
+    /// # Errors
+    /// As for [`Self::from_lists`], and for offsets that do not divide the indices.
     pub fn from_parts(offsets: Vec<usize>, indices: Vec<u32>) -> Result<Self, NeighborError> {
         let invalid = |index, reason| Err(NeighborError::InvalidLists { index, reason });
         if offsets.first() != Some(&0) || offsets.last() != Some(&indices.len()) {
@@ -30,6 +39,9 @@ impl NeighborLists {
             return invalid(i, "offsets must not decrease");
         }
         let n = offsets.len() - 1;
+        if n >= u32::MAX as usize {
+            return Err(NeighborError::TooManyPoints { points: n });
+        }
         let mut seen = vec![u32::MAX; n];
         for i in 0..n {
             for &j in &indices[offsets[i]..offsets[i + 1]] {
@@ -70,6 +82,35 @@ impl NeighborLists {
     /// Offsets and indices: the neighbours of point i are `indices[offsets[i]..offsets[i + 1]]`.
     pub fn as_csr(&self) -> (&[usize], &[u32]) {
         (&self.offsets, &self.indices)
+    }
+
+    /// The lists after a renumbering in which the point with the new index i had the index `order[i]` before; each
+    /// list by ascending index.
+    ///
+    /// # Errors
+    /// [`NeighborError::InvalidLists`] where `order` does not name every point once.
+    pub fn permuted(&self, order: &[u32]) -> Result<Self, NeighborError> {
+        let invalid =
+            |index| Err(NeighborError::InvalidLists { index, reason: "an order must name every point once" });
+        if order.len() != self.len() {
+            return invalid(order.len());
+        }
+        let mut new_index = vec![u32::MAX; self.len()];
+        for (new, &old) in order.iter().enumerate() {
+            match new_index.get_mut(old as usize) {
+                Some(place) if *place == u32::MAX => *place = new as u32,
+                _ => return invalid(new),
+            }
+        }
+        let mut offsets = vec![0];
+        let mut indices = Vec::with_capacity(self.total());
+        for &old in order {
+            let from = indices.len();
+            indices.extend(self.of(old as usize).iter().map(|&j| new_index[j as usize]));
+            indices[from..].sort_unstable();
+            offsets.push(indices.len());
+        }
+        Ok(Self { offsets, indices })
     }
 
     /// The lists, point by point.
@@ -134,6 +175,15 @@ mod tests {
         assert!(of(&[&[2], &[0]]).is_err());
         assert!(of(&[&[1, 1], &[0]]).is_err());
         assert!(NeighborLists::from_parts(vec![0, 2, 1], vec![1]).is_err());
+    }
+
+    #[test]
+    fn orders_are_checked() {
+        let lists = NeighborLists::from_lists(vec![vec![1], vec![0, 2], vec![1]]).unwrap();
+        assert_eq!(lists.permuted(&[1, 0, 2]).unwrap().of(0), [1, 2]);
+        assert!(lists.permuted(&[1, 0]).is_err());
+        assert!(lists.permuted(&[1, 1, 0]).is_err());
+        assert!(lists.permuted(&[1, 3, 0]).is_err());
     }
 
     #[test]

@@ -1,17 +1,19 @@
 //! Neighbour lists by radius.
 
-use rayon::prelude::*;
+use std::ops::RangeInclusive;
 
-use crate::cell_list::{CellList, check_points};
+use crate::check::{check_points, squared_distance};
+use crate::search::{Reach, Search};
 use crate::{NeighborError, NeighborLists};
 
-/// Points that one task searches around; fixed, so that nothing depends on the number of threads.
-const POINTS_PER_TASK: usize = 1024;
-
-/// Points nearer than this, relative to the radius, coincide: no stencil could tell them apart.
+/// Points nearer than this, relative to the radius (the larger of two), coincide: the columns of a least-squares fit
+/// that belong to them would agree to about the square root of the machine precision times 1e-2.
 pub const COINCIDENCE: f64 = 1e-10;
 
-/// Interaction radii.
+/// Radii whose squares, and those of [`COINCIDENCE`] times them, are ordinary numbers.
+pub(crate) const RADII: RangeInclusive<f64> = 1e-140..=1e140;
+
+/// Interaction radii h.
 #[derive(Debug, Clone, Copy)]
 pub enum Radius<'a> {
     /// The same for all points.
@@ -21,7 +23,11 @@ pub enum Radius<'a> {
 }
 
 impl Radius<'_> {
-    fn of(&self, i: usize) -> f64 {
+    /// The radius of a point.
+    ///
+    /// # Panics
+    /// For a point that has no radius.
+    pub fn of(&self, i: usize) -> f64 {
         match self {
             Self::Uniform(radius) => *radius,
             Self::PerPoint(radii) => radii[i],
@@ -29,17 +35,16 @@ impl Radius<'_> {
     }
 
     fn check(&self, points: usize) -> Result<(), NeighborError> {
-        let valid = |radius: f64| radius > 0.0 && radius.is_finite();
-        match self {
-            Self::Uniform(radius) if valid(*radius) => Ok(()),
-            Self::Uniform(radius) => Err(NeighborError::InvalidRadius { index: 0, radius: *radius }),
-            Self::PerPoint(radii) if radii.len() != points => {
-                Err(NeighborError::LengthMismatch { radii: radii.len(), points })
+        let given = match self {
+            Self::Uniform(radius) => std::slice::from_ref(radius),
+            Self::PerPoint(radii) if radii.len() == points => radii,
+            Self::PerPoint(radii) => {
+                return Err(NeighborError::LengthMismatch { radii: radii.len(), points });
             }
-            Self::PerPoint(radii) => match radii.iter().position(|&r| !valid(r)) {
-                Some(index) => Err(NeighborError::InvalidRadius { index, radius: radii[index] }),
-                None => Ok(()),
-            },
+        };
+        match given.iter().position(|r| !RADII.contains(r)) {
+            Some(index) => Err(NeighborError::InvalidRadius { index, radius: given[index] }),
+            None => Ok(()),
         }
     }
 }
@@ -53,10 +58,13 @@ pub enum Distance {
     D2,
 }
 
-/// All points j with `d(x_j, x_i) <= 1`, for every point i, in an order that depends on the points alone.
+/// All points j other than i with `d(x_j, x_i) <= 1`, by ascending index, for every point i.
+///
+/// The work is in proportion to the number of neighbours, for radii that vary strongly as well.
 ///
 /// # Errors
-/// Points that are not finite, that coincide, or that have no neighbour; radii that are not positive.
+/// Points that are not finite, that coincide (see [`COINCIDENCE`]), or that have no neighbour; radii that are not
+/// positive and finite.
 pub fn within_radius<const D: usize>(
     points: &[[f64; D]],
     radius: Radius<'_>,
@@ -64,110 +72,51 @@ pub fn within_radius<const D: usize>(
 ) -> Result<NeighborLists, NeighborError> {
     check_points(points)?;
     radius.check(points.len())?;
-    let largest = (0..points.len()).map(|i| radius.of(i)).fold(0.0, f64::max);
-    let mean = (0..points.len()).map(|i| radius.of(i)).sum::<f64>() / points.len().max(1) as f64;
-    let cells = CellList::new(points, mean)?;
-    let search = Search { points, radius, distance, largest, cells };
-    // Searching in the order of the cells keeps the memory that is read close together.
-    let found: Vec<(Vec<u32>, Vec<u32>)> = search
-        .cells
-        .order()
-        .par_chunks(POINTS_PER_TASK)
-        .map(|task| search.run(task))
-        .collect::<Result<_, _>>()?;
-    Ok(search.gather(&found))
+    let reach = match (radius, distance) {
+        (Radius::Uniform(h), _) => Reach::Ball(Radius::Uniform(h)),
+        (Radius::PerPoint(radii), _) if radii.windows(2).all(|pair| pair[0] == pair[1]) => {
+            Reach::Ball(Radius::Uniform(radii.first().copied().unwrap_or(1.0)))
+        }
+        (radii, Distance::D1) => Reach::Ball(radii),
+        (Radius::PerPoint(radii), Distance::D2) => Reach::Mean(radii),
+    };
+    let lists = Search::new(points, reach).run()?;
+    require_neighbors(&lists, 1, points, radius, distance)?;
+    Ok(lists)
 }
 
-struct Search<'a, const D: usize> {
-    points: &'a [[f64; D]],
-    radius: Radius<'a>,
+/// Checks that every point has at least `asked` neighbours in lists that [`within_radius`] made with these arguments.
+///
+/// # Errors
+/// [`NeighborError::TooFewNeighbors`] for the first point that has fewer; it says what radius would be enough.
+/// [`NeighborError::TooFewPoints`] if none would be.
+pub fn require_neighbors<const D: usize>(
+    lists: &NeighborLists,
+    asked: usize,
+    points: &[[f64; D]],
+    radius: Radius<'_>,
     distance: Distance,
-    largest: f64,
-    cells: CellList<'a, D>,
-}
-
-impl<const D: usize> Search<'_, D> {
-    /// Counts and neighbours of the points of a task, one after the other.
-    fn run(&self, task: &[u32]) -> Result<(Vec<u32>, Vec<u32>), NeighborError> {
-        let mut counts = Vec::with_capacity(task.len());
-        let mut indices = Vec::with_capacity(32 * task.len());
-        for &i in task {
-            let before = indices.len();
-            let own = self.radius.of(i as usize);
-            let nearest = self.collect(i, own, &mut indices);
-            let count = indices.len() - before;
-            if let Some((squared, j)) = nearest {
-                if squared <= (COINCIDENCE * own).powi(2) {
-                    let (first, second) = (i.min(j) as usize, i.max(j) as usize);
-                    return Err(NeighborError::Duplicate {
-                        first,
-                        second,
-                        position: self.points[first].to_vec(),
-                    });
-                }
-            } else {
-                let index = i as usize;
-                return Err(NeighborError::Isolated {
-                    index,
-                    position: self.points[index].to_vec(),
-                    radius: own,
-                });
-            }
-            counts.push(count as u32);
-        }
-        Ok((counts, indices))
+) -> Result<(), NeighborError> {
+    let Some(index) = lists.iter().position(|list| list.len() < asked) else { return Ok(()) };
+    if asked >= points.len() {
+        return Err(NeighborError::TooFewPoints { asked, points: points.len() });
     }
-
-    /// Appends the neighbours of i; returns the nearest of them.
-    fn collect(&self, i: u32, own: f64, indices: &mut Vec<u32>) -> Option<(f64, u32)> {
-        let center = &self.points[i as usize];
-        let mut nearest: Option<(f64, u32)> = None;
-        let mut take = |j: u32, squared: f64| {
-            if nearest.is_none_or(|(s, _)| squared < s) {
-                nearest = Some((squared, j));
-            }
-            indices.push(j);
-        };
-        match (self.distance, self.radius) {
-            (Distance::D2, Radius::PerPoint(radii)) => {
-                self.cells.visit(center, 0.5 * (own + self.largest), |j, squared| {
-                    let reach = 0.5 * (own + radii[j as usize]);
-                    if squared <= reach * reach && j != i {
-                        take(j, squared);
-                    }
-                });
-            }
-            _ => self.cells.visit(center, own, |j, squared| {
-                if j != i {
-                    take(j, squared);
-                }
-            }),
+    let needed_for = |j: usize| {
+        let length = squared_distance(&points[j], &points[index]).sqrt();
+        match distance {
+            Distance::D1 => length,
+            Distance::D2 if matches!(radius, Radius::Uniform(_)) => length,
+            Distance::D2 => 2.0 * length - radius.of(j),
         }
-        nearest
-    }
-
-    /// Puts the lists of the tasks, which are in the order of the cells, in the order of the points.
-    fn gather(&self, found: &[(Vec<u32>, Vec<u32>)]) -> NeighborLists {
-        let n = self.points.len();
-        let mut offsets = vec![0_usize; n + 1];
-        let counts = found.iter().flat_map(|(counts, _)| counts);
-        self.cells
-            .order()
-            .iter()
-            .zip(counts)
-            .for_each(|(&i, &count)| offsets[i as usize + 1] = count as usize);
-        for i in 0..n {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut indices = vec![0_u32; offsets[n]];
-        for (task, (counts, list)) in self.cells.order().chunks(POINTS_PER_TASK).zip(found) {
-            let mut from = 0;
-            for (&i, &count) in task.iter().zip(counts) {
-                let to = from + count as usize;
-                indices[offsets[i as usize]..offsets[i as usize + 1]].copy_from_slice(&list[from..to]);
-                from = to;
-            }
-        }
-        NeighborLists::from_search(offsets, indices)
-    }
+    };
+    let mut needed: Vec<f64> = (0..points.len()).filter(|&j| j != index).map(needed_for).collect();
+    let (_, &mut sufficient, _) = needed.select_nth_unstable_by(asked - 1, f64::total_cmp);
+    Err(NeighborError::TooFewNeighbors {
+        index,
+        position: points[index].to_vec(),
+        radius: radius.of(index),
+        found: lists.of(index).len(),
+        asked,
+        sufficient,
+    })
 }

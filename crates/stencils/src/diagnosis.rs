@@ -69,7 +69,7 @@ impl<const D: usize> LocalFit<D> {
         let points = scratch.points();
         for (what, given) in [("offsets", offsets.len()), ("coefficients", coefficients.len())] {
             if given != points {
-                return Err(StencilError::LengthMismatch { what, given, points });
+                return Err(StencilError::LengthMismatch { what, given, expected: points });
             }
         }
         if centre >= points {

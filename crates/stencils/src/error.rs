@@ -78,14 +78,14 @@ pub enum StencilError {
         /// Why.
         source: Box<StencilError>,
     },
-    /// As many weights or places for coefficients as points are needed.
-    #[error("{given} {what} for {points} points")]
+    /// A slice of the wrong length.
+    #[error("{given} {what} where {expected} are needed")]
     LengthMismatch {
-        /// What there should be one of for each point.
+        /// What is in the slice.
         what: &'static str,
-        /// How many there are.
+        /// Its length.
         given: usize,
-        /// Points of the support.
-        points: usize,
+        /// The length that it should have.
+        expected: usize,
     },
 }

@@ -126,10 +126,9 @@ impl<const D: usize> LocalFit<D> {
         scratch: &mut FitScratch<D>,
         out: &mut [f64],
     ) -> Result<(), StencilError> {
-        let points = scratch.weights.len();
-        if out.len() != points {
-            return Err(StencilError::LengthMismatch { what: "coefficients", given: out.len(), points });
-        }
+        let (points, count) = (scratch.points(), self.monomials.count());
+        check_length("coefficients", out.len(), points)?;
+        check_length("moments", moments.len(), count)?;
         let remainder = scratch.qr.least_norm(moments, &mut scratch.z, out);
         out.iter_mut().zip(&scratch.weights).for_each(|(c, w)| *c *= w);
         let scale = moments.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
@@ -141,44 +140,45 @@ impl<const D: usize> LocalFit<D> {
     }
 
     /// The correction vector of Kraus et al. (2022), (18): of least weighted norm in the null space of the test
-    /// functions, with the entry of `centre`, a point at the centre, equal to 1.
+    /// functions, with the entry of the point at `centre` equal to 1.
     ///
     /// # Errors
-    /// [`StencilError::Unresolvable`] where the null space has no such vector.
+    /// [`StencilError::Unresolvable`] where the null space has no such vector: there are as many monomials as points.
     pub fn correction(
         &self,
         centre: usize,
         scratch: &mut FitScratch<D>,
         out: &mut [f64],
     ) -> Result<(), StencilError> {
-        // The projection of the unit vector e onto the null space, in the weighted inner product: W (I - Q Q^T) e.
-        let points = scratch.weights.len();
-        let own_weight = scratch.weights[centre];
-        let mut moments = std::mem::take(&mut scratch.moments);
-        Functional::Value.moments(&self.monomials, scratch.radius, &mut moments);
-        moments.iter_mut().for_each(|m| *m *= own_weight);
-        let outcome = self.coefficients_for(&moments, scratch, out);
-        scratch.moments = moments;
-        outcome?;
-        out.iter_mut().for_each(|c| *c = -*c);
-        out[centre] += own_weight;
-        let own = out[centre];
-        if own <= REPRODUCTION_TOLERANCE * own_weight {
-            let (rank, monomials) = (scratch.qr.rank(), self.monomials.count());
-            return Err(StencilError::Unresolvable { points, monomials, rank, remainder: own });
+        let points = scratch.points();
+        check_length("entries", out.len(), points)?;
+        if centre >= points {
+            return Err(StencilError::NoSuchPoint { entry: centre, points });
         }
-        out.iter_mut().for_each(|c| *c /= own);
+        // The null space of K is W times the complement of the columns of W K^T.
+        scratch.qr.complement(centre, out);
+        let remainder = out[centre];
+        if remainder <= REPRODUCTION_TOLERANCE {
+            let (rank, monomials) = (scratch.qr.rank(), self.monomials.count());
+            return Err(StencilError::Unresolvable { points, monomials, rank, remainder });
+        }
+        let own = remainder * scratch.weights[centre];
+        out.iter_mut().zip(&scratch.weights).for_each(|(c, w)| *c *= w / own);
+        // Exactly, whatever the division has rounded.
+        out[centre] = 1.0;
         Ok(())
     }
 }
 
+fn check_length(what: &'static str, given: usize, expected: usize) -> Result<(), StencilError> {
+    if given == expected { Ok(()) } else { Err(StencilError::LengthMismatch { what, given, expected }) }
+}
+
 fn check<const D: usize>(offsets: &[[f64; D]], weights: &[f64], radius: f64) -> Result<(), StencilError> {
     let points = offsets.len();
-    if weights.len() != points {
-        return Err(StencilError::LengthMismatch { what: "weights", given: weights.len(), points });
-    }
+    check_length("weights", weights.len(), points)?;
     if points == 0 {
-        return Err(StencilError::LengthMismatch { what: "offsets", given: 0, points: 1 });
+        return check_length("offsets", 0, 1);
     }
     if !(radius > 0.0 && radius.is_finite()) {
         return Err(StencilError::Invalid { what: "radius", entry: 0, value: radius });

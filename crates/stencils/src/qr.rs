@@ -83,7 +83,7 @@ impl Qr {
         for k in 0..self.columns.min(self.rows) {
             for j in k..self.columns {
                 let column = &self.a[j * self.rows + k..(j + 1) * self.rows];
-                self.norms[j] = column.iter().map(|x| x * x).sum::<f64>();
+                self.norms[j] = dot(column, column);
             }
             let pivot =
                 (k..self.columns).fold(k, |best, j| if self.norms[j] > self.norms[best] { j } else { best });
@@ -108,7 +108,7 @@ impl Qr {
         let rows = self.rows;
         let (head, tail) = self.a.split_at_mut((k + 1) * rows);
         let v = &mut head[k * rows + k..];
-        let below: f64 = v[1..].iter().map(|x| x * x).sum();
+        let below = dot(&v[1..], &v[1..]);
         let alpha = v[0];
         let norm = (alpha * alpha + below).sqrt();
         if below == 0.0 {
@@ -137,7 +137,7 @@ impl Qr {
         for j in 0..self.columns {
             let known = j.min(self.rank);
             let column = &self.a[j * rows..j * rows + known];
-            let sum = b[self.pivots[j]] - column.iter().zip(&z[..known]).map(|(r, z)| r * z).sum::<f64>();
+            let sum = b[self.pivots[j]] - dot(column, &z[..known]);
             if j < self.rank {
                 z[j] = sum / self.diagonal[j];
             } else {
@@ -151,12 +151,91 @@ impl Qr {
         }
         remainder
     }
+
+    /// Writes the projection of the unit vector `entry` onto the complement of the columns to `y`.
+    ///
+    /// It is made of what `Q^T e` has beyond the rank, not as a difference that could cancel.
+    pub(crate) fn complement(&self, entry: usize, y: &mut [f64]) {
+        let rows = self.rows;
+        y.fill(0.0);
+        y[entry] = 1.0;
+        for k in 0..self.rank {
+            apply(&self.a[k * rows + k..(k + 1) * rows], self.tau[k], &mut y[k..]);
+        }
+        y[..self.rank].fill(0.0);
+        for k in (0..self.rank).rev() {
+            apply(&self.a[k * rows + k..(k + 1) * rows], self.tau[k], &mut y[k..]);
+        }
+    }
 }
 
-/// `x -= tau v (v . x)`, with v[0] read as 1.
+/// `x -= tau v (v . x)`.
 fn apply(v: &[f64], tau: f64, x: &mut [f64]) {
-    let (first, rest) = x.split_at_mut(1);
-    let dot = tau * (first[0] + v[1..].iter().zip(rest.iter()).map(|(v, x)| v * x).sum::<f64>());
-    first[0] -= dot;
-    rest.iter_mut().zip(&v[1..]).for_each(|(x, v)| *x -= dot * v);
+    let factor = tau * dot(v, x);
+    x.iter_mut().zip(v).for_each(|(x, v)| *x -= factor * v);
+}
+
+/// A scalar product in four partial sums, which the processor can form side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a4, a_rest) = a.as_chunks::<4>();
+    let (b4, b_rest) = b.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (a, b) in a4.iter().zip(b4) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns of a Vandermonde matrix.
+    fn vandermonde(rows: usize, columns: usize) -> Qr {
+        let mut qr = Qr::default();
+        qr.resize(rows, columns);
+        for column in 0..columns {
+            let power = |row: usize| (row as f64 / rows as f64 - 0.4).powi(column as i32);
+            qr.column_mut(column).iter_mut().enumerate().for_each(|(row, x)| *x = power(row));
+        }
+        qr
+    }
+
+    #[test]
+    fn both_factorisations_solve_the_same_problem() {
+        let b = [1.0, -2.0, 0.5, 3.0, 1.0];
+        let solve = |qr: &Qr| {
+            let (mut z, mut y) = ([0.0; 5], [0.0; 11]);
+            assert!(qr.least_norm(&b, &mut z, &mut y) == 0.0);
+            y
+        };
+        let (mut plain, mut pivoted) = (vandermonde(11, 5), vandermonde(11, 5));
+        assert!(plain.factor(1e-11));
+        pivoted.factor_pivoted(1e-11);
+        assert_eq!((plain.rank(), pivoted.rank()), (5, 5));
+        let (y, w) = (solve(&plain), solve(&pivoted));
+        let mut a = vandermonde(11, 5);
+        for (column, b) in b.iter().enumerate() {
+            let product: f64 = a.column_mut(column).iter().zip(&y).map(|(a, y)| a * y).sum();
+            assert!((product - b).abs() < 1e-12, "{product} {b}");
+        }
+        assert!(y.iter().zip(&w).all(|(y, w)| (y - w).abs() < 1e-10 * (1.0 + y.abs())));
+    }
+
+    #[test]
+    fn dependent_columns_are_left_out() {
+        let mut qr = vandermonde(8, 3);
+        let copy = qr.column_mut(1).to_vec();
+        qr.column_mut(2).copy_from_slice(&copy);
+        let mut plain = qr.clone();
+        assert!(!plain.factor(1e-11));
+        qr.factor_pivoted(1e-11);
+        assert_eq!(qr.rank(), 2);
+        let (mut z, mut y) = ([0.0; 3], [0.0; 8]);
+        assert!(qr.least_norm(&[1.0, 2.0, 2.0], &mut z, &mut y) < 1e-13);
+        assert!(qr.least_norm(&[1.0, 2.0, 3.0], &mut z, &mut y) > 0.4);
+    }
 }

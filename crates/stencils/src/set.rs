@@ -97,7 +97,7 @@ pub fn build_stencils<const D: usize>(
 fn check(points: usize, supports: (&[usize], &[u32]), radii: &[f64]) -> Result<usize, StencilError> {
     let (offsets, indices) = supports;
     if radii.len() != points {
-        return Err(StencilError::LengthMismatch { what: "radii", given: radii.len(), points });
+        return Err(StencilError::LengthMismatch { what: "radii", given: radii.len(), expected: points });
     }
     let invalid = |node, reason| Err(StencilError::InvalidSupports { node, points, reason });
     if offsets.len() != points + 1 {
