@@ -13,7 +13,7 @@ use super::{Outcome, by_hand};
 /// Spacing of about 1e5 nodes in the unit square.
 pub(super) const SPACING: f64 = 0.0032;
 
-const REPETITIONS: usize = 5;
+const REPETITIONS: usize = 3;
 
 /// How much more the facade may take than the crates by hand.
 const FACADE_TARGET: f64 = 1.05;
