@@ -52,6 +52,10 @@ impl Failure {
 
 impl From<meshless::Error> for Failure {
     fn from(error: meshless::Error) -> Self {
-        if error.is_input() { Self::input(error.to_string()) } else { Self::failed(format!("error: {error}")) }
+        if error.is_input() {
+            Self::input(error.to_string())
+        } else {
+            Self::failed(format!("error: {error}"))
+        }
     }
 }

@@ -13,7 +13,9 @@ use crate::progress::Bar;
 
 pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
     if args.tolerance.is_some() {
-        return Err(Failure::input("error: --tolerance is not supported yet; choose --spacing and look at the estimate"));
+        return Err(Failure::input(
+            "error: --tolerance is not supported yet; choose --spacing and look at the estimate",
+        ));
     }
     let scene = read(args)?;
     let plan = Plan::new(&scene)?;
@@ -63,7 +65,10 @@ fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) 
 
 fn print(report: &Report, solution: &Solution) {
     println!("{}", report.title);
-    println!("method      {} (order {}), {} unknowns, spacing {:.4}", report.method, report.order, report.unknowns, report.spacing);
+    println!(
+        "method      {} (order {}), {} unknowns, spacing {:.4}",
+        report.method, report.order, report.unknowns, report.spacing
+    );
     let nodes = &report.nodes;
     println!(
         "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",
@@ -72,9 +77,15 @@ fn print(report: &Report, solution: &Solution) {
     println!("contrast    {:.3e}", report.contrast);
     println!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
     let solver = &report.solver;
-    println!("solver      {}, {} iterations, residual {:.1e}", solver.name, solver.iterations, solver.residual);
+    println!(
+        "solver      {}, {} iterations, residual {:.1e}",
+        solver.name, solver.iterations, solver.residual
+    );
     if let Some(errors) = &report.errors {
-        println!("error       l2 {:.3e}, linf {:.3e}, gradient linf {:.3e}", errors.l2, errors.linf, errors.gradient_linf);
+        println!(
+            "error       l2 {:.3e}, linf {:.3e}, gradient linf {:.3e}",
+            errors.l2, errors.linf, errors.gradient_linf
+        );
         if errors.regions.len() > 1 {
             for (name, region) in &errors.regions {
                 println!("  {name:<10} l2 {:.3e}, linf {:.3e}", region.l2, region.linf);

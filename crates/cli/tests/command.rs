@@ -75,8 +75,22 @@ fn json_is_one_object_with_the_promised_keys() {
     assert!(output.status.success(), "{}", stderr(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     for key in [
-        "title", "dimension", "unknowns", "spacing", "method", "order", "contrast", "effects", "skipped", "errors",
-        "estimate", "extrema", "solver", "seconds", "peak_memory_mb", "probes",
+        "title",
+        "dimension",
+        "unknowns",
+        "spacing",
+        "method",
+        "order",
+        "contrast",
+        "effects",
+        "skipped",
+        "errors",
+        "estimate",
+        "extrema",
+        "solver",
+        "seconds",
+        "peak_memory_mb",
+        "probes",
     ] {
         assert!(json.get(key).is_some(), "{key}");
     }
@@ -96,8 +110,17 @@ fn the_spacing_and_the_method_can_be_overridden() {
     let scene = scene_in(folder.path(), SCENE);
     let out = folder.path().join("out");
     let output = meshless(&[
-        "solve", scene.to_str().unwrap(), "--json", "--spacing", "0.01", "--method", "gfdm-conservative", "--out",
-        out.to_str().unwrap(), "--threads", "1",
+        "solve",
+        scene.to_str().unwrap(),
+        "--json",
+        "--spacing",
+        "0.01",
+        "--method",
+        "gfdm-conservative",
+        "--out",
+        out.to_str().unwrap(),
+        "--threads",
+        "1",
     ]);
     assert!(output.status.success(), "{}", stderr(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -200,7 +223,12 @@ fn an_output_folder_that_cannot_be_written_is_refused_before_solving() {
 
 #[test]
 fn a_wrong_command_line_ends_with_status_2() {
-    for args in [&["solve"][..], &["solve", "no-such-file.toml"], &["frobnicate"], &["solve", "x.toml", "--threads", "no"]] {
+    for args in [
+        &["solve"][..],
+        &["solve", "no-such-file.toml"],
+        &["frobnicate"],
+        &["solve", "x.toml", "--threads", "no"],
+    ] {
         assert_eq!(meshless(args).status.code(), Some(2), "{args:?}");
     }
 }

@@ -9,7 +9,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum MethodError {
     /// A local fit cannot reproduce the operator even on an enlarged support.
-    #[error("no stencil at node {node} (near {position:?}): {source}; use a smaller spacing or a larger support there")]
+    #[error(
+        "no stencil at node {node} (near {position:?}): {source}; use a smaller spacing or a larger support there"
+    )]
     Stencil {
         /// The node.
         node: usize,

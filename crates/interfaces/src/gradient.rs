@@ -17,7 +17,10 @@ const NODES_PER_MONOMIAL: f64 = 1.3;
 ///
 /// Degree 2 where the region has enough nodes in the support, a larger support where not, degree 1 where that does
 /// not help. A node that has no neighbour of its own region at all gets the gradient zero.
-pub(crate) fn recover<const D: usize>(problem: &Problem<'_, D>, u: &[f64]) -> Result<Vec<[f64; D]>, MethodError> {
+pub(crate) fn recover<const D: usize>(
+    problem: &Problem<'_, D>,
+    u: &[f64],
+) -> Result<Vec<[f64; D]>, MethodError> {
     let fits = [NodeFit::new(DEGREE, Weight::Exponential), NodeFit::new(1, Weight::Exponential)];
     let most = problem.supports.lists.max_count();
     (0..u.len())
@@ -27,7 +30,9 @@ pub(crate) fn recover<const D: usize>(problem: &Problem<'_, D>, u: &[f64]) -> Re
             |(scratch, own, coefficients), i| {
                 own.clear();
                 own.extend(own_region(problem, i, problem.supports.lists.of(i)));
-                if let Some(gradient) = fit_gradient(problem, &fits[0], DEGREE, i, own, &mut scratch[0], coefficients, u) {
+                if let Some(gradient) =
+                    fit_gradient(problem, &fits[0], DEGREE, i, own, &mut scratch[0], coefficients, u)
+                {
                     return Ok(gradient);
                 }
                 let wide: Vec<u32> = own_region(problem, i, &enlarged_support(problem, i)).collect();
@@ -82,10 +87,16 @@ fn fit_gradient<const D: usize>(
 }
 
 /// The slope towards the nearest node of the region: all that a row of nodes determines.
-fn along_the_nearest<const D: usize>(problem: &Problem<'_, D>, i: usize, neighbors: &[u32], u: &[f64]) -> [f64; D] {
+fn along_the_nearest<const D: usize>(
+    problem: &Problem<'_, D>,
+    i: usize,
+    neighbors: &[u32],
+    u: &[f64],
+) -> [f64; D] {
     let points = problem.cloud.points();
     let squared = |j: u32| (0..D).map(|k| (points[j as usize][k] - points[i][k]).powi(2)).sum::<f64>();
-    let nearest = neighbors.iter().copied().min_by(|&a, &b| squared(a).total_cmp(&squared(b)).then(a.cmp(&b)));
+    let nearest =
+        neighbors.iter().copied().min_by(|&a, &b| squared(a).total_cmp(&squared(b)).then(a.cmp(&b)));
     nearest.map_or([0.0; D], |j| {
         let slope = (u[j as usize] - u[i]) / squared(j);
         std::array::from_fn(|k| slope * (points[j as usize][k] - points[i][k]))

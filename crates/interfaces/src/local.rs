@@ -73,7 +73,11 @@ impl<const D: usize> NodeFit<D> {
     }
 
     /// The correction vector of Kraus et al. (2022), (18), on the neighbours; it is 1 at the node itself.
-    pub(crate) fn correction(&self, scratch: &mut NodeScratch<D>, out: &mut [f64]) -> Result<(), StencilError> {
+    pub(crate) fn correction(
+        &self,
+        scratch: &mut NodeScratch<D>,
+        out: &mut [f64],
+    ) -> Result<(), StencilError> {
         let count = scratch.offsets.len();
         self.fit.correction(0, &mut scratch.fit, &mut scratch.coefficients[..count])?;
         out.copy_from_slice(&scratch.coefficients[1..count]);

@@ -101,7 +101,10 @@ pub struct Problem<'a, const D: usize> {
 
 impl<const D: usize> std::fmt::Debug for Problem<'_, D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Problem").field("nodes", &self.cloud.len()).field("regions", &self.materials.len()).finish()
+        f.debug_struct("Problem")
+            .field("nodes", &self.cloud.len())
+            .field("regions", &self.materials.len())
+            .finish()
     }
 }
 

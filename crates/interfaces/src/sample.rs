@@ -91,7 +91,9 @@ impl<'a, const D: usize> Sampler<'a, D> {
         scratch.found.clear();
         self.index.within(x, radius, &mut scratch.found);
         scratch.own.clear();
-        scratch.own.extend(scratch.found.iter().copied().filter(|&j| self.problem.labels[j as usize] == region));
+        scratch
+            .own
+            .extend(scratch.found.iter().copied().filter(|&j| self.problem.labels[j as usize] == region));
     }
 
     fn fit(
@@ -120,7 +122,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
         scratch.coefficients.resize(most, 0.0);
         let mut apply = |functional: &Functional<D>| -> Option<f64> {
             fit.coefficients(functional, memory, &mut scratch.coefficients[..most]).ok()?;
-            let sum: f64 = scratch.own.iter().zip(&scratch.coefficients).map(|(&j, c)| c * self.u[j as usize]).sum();
+            let sum: f64 =
+                scratch.own.iter().zip(&scratch.coefficients).map(|(&j, c)| c * self.u[j as usize]).sum();
             sum.is_finite().then_some(sum)
         };
         let value = apply(&Functional::Value)?;
@@ -134,7 +137,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
     fn nearest_of_region(&self, x: &[f64; D], region: u16, own: &[u32]) -> Option<Sample<D>> {
         let points = self.problem.cloud.points();
         let squared = |j: u32| (0..D).map(|k| (points[j as usize][k] - x[k]).powi(2)).sum::<f64>();
-        let nearest = own.iter().copied().min_by(|&a, &b| squared(a).total_cmp(&squared(b)).then(a.cmp(&b)))?;
+        let nearest =
+            own.iter().copied().min_by(|&a, &b| squared(a).total_cmp(&squared(b)).then(a.cmp(&b)))?;
         Some(Sample { value: self.u[nearest as usize], gradient: [0.0; D], region })
     }
 }

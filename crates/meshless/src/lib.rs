@@ -94,6 +94,9 @@ pub use meshless_stencils as stencils;
 pub const MAX_NODES: usize = 20_000_000;
 
 /// Runs `work` with a given number of threads; results do not depend on the number.
-pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, rayon::ThreadPoolBuildError> {
+pub fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, rayon::ThreadPoolBuildError> {
     Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(work))
 }

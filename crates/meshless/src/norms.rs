@@ -20,7 +20,11 @@ impl ErrorNorms {
 
     /// `sqrt(sum v e^2 / sum v u^2)`; absolute where the exact solution vanishes.
     pub fn l2(&self) -> f64 {
-        if self.exact_squared > 0.0 { (self.error_squared / self.exact_squared).sqrt() } else { self.error_squared.sqrt() }
+        if self.exact_squared > 0.0 {
+            (self.error_squared / self.exact_squared).sqrt()
+        } else {
+            self.error_squared.sqrt()
+        }
     }
 
     /// `max |e| / max |u|`; absolute where the exact solution vanishes.

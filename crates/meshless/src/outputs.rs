@@ -12,7 +12,12 @@ use crate::plan::{Plan, Stage};
 /// Writes what the plan says into `folder`, which must exist, as `stem.vtu` and `stem.svg`; returns the files.
 ///
 /// Every file is complete or absent.
-pub fn write_outputs(plan: &Plan, solution: &Solution, folder: &Path, stem: &str) -> Result<Vec<PathBuf>, Error> {
+pub fn write_outputs(
+    plan: &Plan,
+    solution: &Solution,
+    folder: &Path,
+    stem: &str,
+) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     if plan.runs(Stage::Vtu) {
         let path = folder.join(format!("{stem}.vtu"));

@@ -44,8 +44,10 @@ impl Overrides<'_> {
     /// Changes the scene.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), OverrideError> {
         if let Some(name) = self.method {
-            scene.method.name = MethodName::parse(name)
-                .map_err(|reason| OverrideError::Method { name: name.to_owned(), reason: reason.to_string() })?;
+            scene.method.name = MethodName::parse(name).map_err(|reason| OverrideError::Method {
+                name: name.to_owned(),
+                reason: reason.to_string(),
+            })?;
         }
         if let Some(order) = self.order {
             if !(2..=8).contains(&order) {

@@ -40,12 +40,12 @@ pub use csr::{Csr, RowBuilder};
 pub use difference::{DifferenceMatrix, MatrixReport, Reduced, WrongSign};
 pub use error::MatrixError;
 pub use floating::{
-    Bordered, BorderedSolution, ChainLink, Cluster, ComponentInfo, DEFAULT_THRESHOLD, GroupUnknowns, NeumannSolution,
-    Split, clusters, pure_neumann,
+    Bordered, BorderedSolution, ChainLink, Cluster, ComponentInfo, DEFAULT_THRESHOLD, GroupUnknowns,
+    NeumannSolution, Split, clusters, pure_neumann,
 };
 pub use market::{MarketError, read_matrix_market, write_matrix_market};
 pub use precond::{IncompleteLu, Jacobi, Preconditioner, PreconditionerKind, ilu0, ilut};
 pub use solver::{
-    AUTO_DIRECT_MAX, AUTO_RESTART, DEFAULT_TOLERANCE, LinearOperator, Prepared, SolveError, SolveInfo, SolverKind,
-    SolverParams, solve,
+    AUTO_DIRECT_MAX, AUTO_RESTART, DEFAULT_TOLERANCE, LinearOperator, Prepared, SolveError, SolveInfo,
+    SolverKind, SolverParams, solve,
 };

@@ -35,7 +35,10 @@ pub(super) fn as_flux(condition: &Condition, eta: f64) -> Option<(f64, f64)> {
 ///
 /// At an edge or a corner the conditions of all faces are added: with normals n_f that is the derivative along
 /// their sum, which every smooth solution satisfies.
-pub(super) fn collocate<const D: usize>(problem: &Problem<'_, D>, index: usize) -> Result<BoundaryRow, MethodError> {
+pub(super) fn collocate<const D: usize>(
+    problem: &Problem<'_, D>,
+    index: usize,
+) -> Result<BoundaryRow, MethodError> {
     let node = &problem.cloud.boundary()[index];
     let i = node.node as usize;
     let position = || problem.cloud.points()[i].to_vec();

@@ -73,7 +73,8 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts: &cuts };
         let supports = self.problem.supports;
         let neighbors = supports.lists.of(i);
-        let mut candidates: Vec<(u32, [f64; D])> = neighbors.iter().map(|&j| (j, points[j as usize])).collect();
+        let mut candidates: Vec<(u32, [f64; D])> =
+            neighbors.iter().map(|&j| (j, points[j as usize])).collect();
         // Distance d2: j is listed up to (h_i + h_j) / 2, so all nodes within half of h_i + the least h_j are.
         let least = neighbors.iter().fold(supports.radius[i], |a, &j| a.min(supports.radius[j as usize]));
         let mut searched = 0.5 * (supports.radius[i] + least);
@@ -87,7 +88,8 @@ impl<'a, const D: usize> CellBalance<'a, D> {
                     found.clear();
                     self.index.within(&points[i], searched, &mut found);
                     candidates.clear();
-                    candidates.extend(found.iter().filter(|&&j| j as usize != i).map(|&j| (j, points[j as usize])));
+                    candidates
+                        .extend(found.iter().filter(|&&j| j as usize != i).map(|&j| (j, points[j as usize])));
                 }
                 other => return other.map_err(|e| MethodError::cell(i, &points[i], e)),
             }
@@ -98,8 +100,12 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     pub(super) fn row(&self, i: usize, scratch: &mut CellScratch) -> Result<CellRow, MethodError> {
         let cell = self.cell(i, scratch)?;
         let source = self.problem.source.map_or(0.0, |f| f[i]);
-        let mut row =
-            CellRow { entries: Vec::with_capacity(cell.faces.len()), row_sum: 0.0, rhs: cell.volume * source, volume: cell.volume };
+        let mut row = CellRow {
+            entries: Vec::with_capacity(cell.faces.len()),
+            row_sum: 0.0,
+            rhs: cell.volume * source,
+            volume: cell.volume,
+        };
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
         for face in cell.faces.iter().filter(|f| f.area > negligible) {
             match face.kind {
@@ -123,7 +129,9 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         let transmissibility = face.area * harmonic_mean(here, there) / distance;
         row.entries.push((j, transmissibility));
         let labels = (problem.labels[i], problem.labels[j as usize]);
-        let Some((jump, sign)) = (labels.0 != labels.1).then(|| problem.jump_between(labels.0, labels.1)).flatten() else {
+        let Some((jump, sign)) =
+            (labels.0 != labels.1).then(|| problem.jump_between(labels.0, labels.1)).flatten()
+        else {
             return;
         };
         let middle: [f64; D] = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
@@ -146,7 +154,13 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     }
 
     /// Flux through a piece of the boundary, (21).
-    fn boundary_face(&self, i: usize, id: FaceId, face: &CellFace<D>, row: &mut CellRow) -> Result<(), MethodError> {
+    fn boundary_face(
+        &self,
+        i: usize,
+        id: FaceId,
+        face: &CellFace<D>,
+        row: &mut CellRow,
+    ) -> Result<(), MethodError> {
         let problem = self.problem;
         let position = || problem.cloud.points()[i].to_vec();
         let condition = problem

@@ -21,8 +21,11 @@ impl StrongDiffusivity {
         if problem.uniform_diffusivity().is_some() {
             return None;
         }
-        let mut values: Vec<f64> =
-            if params.log_scaling { problem.eta.iter().map(|e| e.ln()).collect() } else { problem.eta.to_vec() };
+        let mut values: Vec<f64> = if params.log_scaling {
+            problem.eta.iter().map(|e| e.ln()).collect()
+        } else {
+            problem.eta.to_vec()
+        };
         for _ in 0..params.smoothing {
             values = smooth(problem, &values);
         }
@@ -31,7 +34,12 @@ impl StrongDiffusivity {
 
     /// Diffusivity and its gradient at node i, from the coefficients of the partial derivatives
     /// (`partials[k]` has one coefficient for each entry of `neighbors`).
-    pub(super) fn at<const D: usize>(&self, i: usize, neighbors: &[u32], partials: &[Vec<f64>; D]) -> (f64, [f64; D]) {
+    pub(super) fn at<const D: usize>(
+        &self,
+        i: usize,
+        neighbors: &[u32],
+        partials: &[Vec<f64>; D],
+    ) -> (f64, [f64; D]) {
         let centre = self.values[i];
         let mut gradient = std::array::from_fn(|k| {
             partials[k].iter().zip(neighbors).map(|(c, &j)| c * (self.values[j as usize] - centre)).sum()

@@ -82,7 +82,15 @@ impl Parts {
         let cells = cell_rows(problem, &kinds)?;
         counts.stencils += boundary.iter().flatten().count();
         counts.cells = cells.iter().flatten().count();
-        Ok(Self { kinds, known, strong, boundary, cells, counts, stencil_seconds: start.elapsed().as_secs_f64() })
+        Ok(Self {
+            kinds,
+            known,
+            strong,
+            boundary,
+            cells,
+            counts,
+            stencil_seconds: start.elapsed().as_secs_f64(),
+        })
     }
 
     fn assemble<const D: usize>(self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
@@ -95,9 +103,9 @@ impl Parts {
             *b = match self.kinds[i] {
                 RowKind::Dirichlet => self.known[i].unwrap_or(0.0),
                 RowKind::Strong => strong_measure(problem, i) * problem.source.map_or(0.0, |f| f[i]),
-                RowKind::StrongBoundary => {
-                    self.boundary[boundary_index[i] as usize].as_ref().map_or(0.0, |row| boundary_measure(problem, i) * row.rhs)
-                }
+                RowKind::StrongBoundary => self.boundary[boundary_index[i] as usize]
+                    .as_ref()
+                    .map_or(0.0, |row| boundary_measure(problem, i) * row.rhs),
                 RowKind::Conservative => self.cells[i].as_ref().map_or(0.0, |row| row.rhs),
             };
         }
@@ -113,7 +121,10 @@ impl Parts {
             RowKind::StrongBoundary => {
                 if let Some(row) = &self.boundary[boundary_index[i] as usize] {
                     let measure = boundary_measure(problem, i);
-                    row.neighbors.iter().zip(&row.coefficients).for_each(|(&j, c)| out.push(j as usize, measure * c));
+                    row.neighbors
+                        .iter()
+                        .zip(&row.coefficients)
+                        .for_each(|(&j, c)| out.push(j as usize, measure * c));
                     out.add_to_row_sum(measure * row.row_sum);
                 }
             }

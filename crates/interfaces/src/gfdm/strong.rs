@@ -39,15 +39,25 @@ impl StrongRows {
                     return Ok(());
                 }
                 let (neighbors, row) = operator.enlarged_row(i)?;
-                enlarged.lock().unwrap_or_else(std::sync::PoisonError::into_inner).insert(i as u32, (neighbors, row));
+                enlarged
+                    .lock()
+                    .unwrap_or_else(std::sync::PoisonError::into_inner)
+                    .insert(i as u32, (neighbors, row));
                 Ok::<(), MethodError>(())
             },
         )?;
-        Ok(Self { values, enlarged: enlarged.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) })
+        Ok(Self {
+            values,
+            enlarged: enlarged.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner),
+        })
     }
 
     /// Neighbours and coefficients of node i.
-    pub(super) fn row<'a, const D: usize>(&'a self, problem: &Problem<'a, D>, i: usize) -> (&'a [u32], &'a [f64]) {
+    pub(super) fn row<'a, const D: usize>(
+        &'a self,
+        problem: &Problem<'a, D>,
+        i: usize,
+    ) -> (&'a [u32], &'a [f64]) {
         match self.enlarged.get(&(i as u32)) {
             Some((neighbors, row)) => (neighbors, row),
             None => (problem.supports.lists.of(i), self.values.of(i)),

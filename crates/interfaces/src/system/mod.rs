@@ -70,7 +70,10 @@ pub fn solve<const D: usize>(
 }
 
 /// A pure Neumann problem: one node is pinned, and the extra unknown takes up what is not balanced.
-fn solve_unanchored(discretization: &Discretization, params: &SystemParams) -> Result<SystemSolution, MethodError> {
+fn solve_unanchored(
+    discretization: &Discretization,
+    params: &SystemParams,
+) -> Result<SystemSolution, MethodError> {
     let (rows, rhs, volumes) = (&discretization.rows, &discretization.rhs, &discretization.volumes);
     let size: f64 = rhs.iter().map(|b| b.abs()).sum();
     let pin = rhs.len() / 2;

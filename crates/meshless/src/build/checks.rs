@@ -22,7 +22,11 @@ pub(crate) fn check_regions_are_met(scene: &Scene, labels: &[u16]) -> Result<(),
 }
 
 /// The regions of an interface entry must touch.
-pub(crate) fn check_interfaces_touch(scene: &Scene, labels: &[u16], lists: &NeighborLists) -> Result<(), Error> {
+pub(crate) fn check_interfaces_touch(
+    scene: &Scene,
+    labels: &[u16],
+    lists: &NeighborLists,
+) -> Result<(), Error> {
     for spec in &scene.interfaces {
         let [a, b] = spec.between.map(|r| r as u16);
         let touch = labels
@@ -31,8 +35,13 @@ pub(crate) fn check_interfaces_touch(scene: &Scene, labels: &[u16], lists: &Neig
             .any(|(i, &label)| label == a && lists.of(i).iter().any(|&j| labels[j as usize] == b));
         if !touch {
             let [a, b] = spec.between.map(|r| &scene.regions[r].name);
-            let message = format!("the regions \"{a}\" and \"{b}\" do not touch anywhere, so nothing can jump between them");
-            return Err(spec.place.error(message, "remove the entry, or name regions that share an interface").into());
+            let message = format!(
+                "the regions \"{a}\" and \"{b}\" do not touch anywhere, so nothing can jump between them"
+            );
+            return Err(spec
+                .place
+                .error(message, "remove the entry, or name regions that share an interface")
+                .into());
         }
     }
     Ok(())

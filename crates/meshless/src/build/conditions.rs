@@ -50,7 +50,8 @@ impl<const D: usize> Boundary<D> {
     /// Which entry of the scene holds on a face at a point.
     fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
         self.entries.iter().position(|entry| {
-            entry.face.is_none_or(|f| f == face) && entry.place.as_ref().is_none_or(|place| holds(place.at(x)))
+            entry.face.is_none_or(|f| f == face)
+                && entry.place.as_ref().is_none_or(|place| holds(place.at(x)))
         })
     }
 
@@ -97,7 +98,12 @@ fn holds(value: f64) -> bool {
 }
 
 /// Values must be finite, and a Robin condition must have a flux term and not feed the field.
-fn check<const D: usize>(scene: &Scene, spec: &BoundarySpec, condition: &Condition, x: &[f64; D]) -> Result<(), Error> {
+fn check<const D: usize>(
+    scene: &Scene,
+    spec: &BoundarySpec,
+    condition: &Condition,
+    x: &[f64; D],
+) -> Result<(), Error> {
     let finite = |value: f64, spec: &ExprField| {
         if value.is_finite() { Ok(()) } else { Err(not_finite(scene, spec, value, x)) }
     };
@@ -114,8 +120,12 @@ fn check<const D: usize>(scene: &Scene, spec: &BoundarySpec, condition: &Conditi
                 return Err(scene.error_at(b_spec, message, "prescribe u with `dirichlet` there").into());
             }
             if a / b < 0.0 {
-                let message = format!("a/b is negative at {x:?}: such a boundary feeds the field and has no unique solution in general");
-                return Err(scene.error_at(a_spec, message, "a and b of `a u + b eta du/dn = g` must have the same sign").into());
+                let message = format!(
+                    "a/b is negative at {x:?}: such a boundary feeds the field and has no unique solution in general"
+                );
+                return Err(scene
+                    .error_at(a_spec, message, "a and b of `a u + b eta du/dn = g` must have the same sign")
+                    .into());
             }
             Ok(())
         }
@@ -124,9 +134,21 @@ fn check<const D: usize>(scene: &Scene, spec: &BoundarySpec, condition: &Conditi
 }
 
 /// A boundary node for which no entry of the scene matches.
-pub(crate) fn missing_condition<const D: usize>(scene: &Scene, cloud: &Cloud<D>, node: usize, x: &[f64]) -> Error {
-    let faces: Vec<String> =
-        cloud.boundary_of(node).map(|b| b.touches.iter().map(|t| format!("face {}", t.face.0)).collect()).unwrap_or_default();
+pub(crate) fn missing_condition<const D: usize>(
+    scene: &Scene,
+    cloud: &Cloud<D>,
+    node: usize,
+    x: &[f64],
+) -> Error {
+    let faces: Vec<String> = cloud
+        .boundary_of(node)
+        .map(|b| b.touches.iter().map(|t| format!("face {}", t.face.0)).collect())
+        .unwrap_or_default();
     let message = format!("no boundary condition holds at {x:?} ({})", faces.join(", "));
-    scene.error_at_boundaries(message, "add a [[boundaries]] entry for that face, or one with face = \"all\" at the end").into()
+    scene
+        .error_at_boundaries(
+            message,
+            "add a [[boundaries]] entry for that face, or one with face = \"all\" at the end",
+        )
+        .into()
 }

@@ -41,7 +41,10 @@ pub(crate) fn materials<const D: usize>(scene: &Scene) -> Vec<Material<D>> {
     scene
         .regions
         .iter()
-        .map(|r| Material { diffusivity: field(&r.diffusivity.expr), source: r.source.as_ref().map(|s| field(&s.expr)) })
+        .map(|r| Material {
+            diffusivity: field(&r.diffusivity.expr),
+            source: r.source.as_ref().map(|s| field(&s.expr)),
+        })
         .collect()
 }
 
@@ -76,8 +79,11 @@ pub(crate) fn nodal_diffusivity<const D: usize>(
     for (i, &value) in eta.iter().enumerate() {
         if !(value > 0.0 && value.is_finite()) {
             let spec = &scene.regions[labels[i] as usize].diffusivity;
-            let message = format!("the diffusivity is {value} at {:?}; it must be positive and finite", points[i]);
-            return Err(scene.error_at(spec, message, "change the expression, or the region it is for").into());
+            let message =
+                format!("the diffusivity is {value} at {:?}; it must be positive and finite", points[i]);
+            return Err(scene
+                .error_at(spec, message, "change the expression, or the region it is for")
+                .into());
         }
     }
     Ok(eta)
@@ -105,7 +111,11 @@ pub(crate) fn nodal_source<const D: usize>(
 }
 
 /// The exact solution and its gradient at every node.
-pub(crate) fn exact<const D: usize>(scene: &Scene, points: &[[f64; D]], labels: &[u16]) -> Result<Exact<D>, Error> {
+pub(crate) fn exact<const D: usize>(
+    scene: &Scene,
+    points: &[[f64; D]],
+    labels: &[u16],
+) -> Result<Exact<D>, Error> {
     let mut exact = Exact { values: vec![0.0; points.len()], gradients: vec![[0.0; D]; points.len()] };
     for (region, spec) in scene.regions.iter().enumerate() {
         let Some(spec) = &spec.exact else { continue };
@@ -134,11 +144,23 @@ pub(crate) fn exact<const D: usize>(scene: &Scene, points: &[[f64; D]], labels: 
 /// An expression gave something that is not a number where it was needed.
 pub(crate) fn not_finite<const D: usize>(scene: &Scene, spec: &ExprField, value: f64, x: &[f64; D]) -> Error {
     let message = format!("the expression gives {value} at {x:?}");
-    scene.error_at(spec, message, "an expression must be finite wherever it is evaluated; `if(c, a, b)` guards a singular point").into()
+    scene
+        .error_at(
+            spec,
+            message,
+            "an expression must be finite wherever it is evaluated; `if(c, a, b)` guards a singular point",
+        )
+        .into()
 }
 
 /// Evaluates a field at the nodes of one region.
-fn scatter<const D: usize>(field: &Field<D>, region: usize, points: &[[f64; D]], labels: &[u16], out: &mut [f64]) {
+fn scatter<const D: usize>(
+    field: &Field<D>,
+    region: usize,
+    points: &[[f64; D]],
+    labels: &[u16],
+    out: &mut [f64],
+) {
     let nodes: Vec<usize> = (0..points.len()).filter(|&i| labels[i] as usize == region).collect();
     if let Some(value) = field.as_constant() {
         nodes.iter().for_each(|&i| out[i] = value);

@@ -74,7 +74,9 @@ pub(crate) fn explain_cloud(scene: &Scene, error: GeometryError) -> Error {
         GeometryError::InvalidSpacing { .. }
         | GeometryError::SpacingTooLarge { .. }
         | GeometryError::TooManyNodes { .. }
-        | GeometryError::GradedLattice { .. } => scene.error_at(&scene.points.spacing, error.to_string(), "").into(),
+        | GeometryError::GradedLattice { .. } => {
+            scene.error_at(&scene.points.spacing, error.to_string(), "").into()
+        }
         error => located(&scene.domain.place, error),
     }
 }

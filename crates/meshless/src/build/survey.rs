@@ -3,7 +3,7 @@
 use meshless_geometry::estimate_nodes;
 
 use super::fields::materials;
-use super::shapes::{domain, regions, spacing, explain_cloud};
+use super::shapes::{domain, explain_cloud, regions, spacing};
 use crate::Error;
 use crate::scene::{Scene, ShapeSpec};
 
@@ -30,7 +30,8 @@ fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
 
 /// Largest over smallest diffusivity: of the constants where all are constant, else of samples on a lattice.
 pub(crate) fn sampled_contrast(scene: &Scene) -> Result<f64, Error> {
-    let constants: Option<Vec<f64>> = scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
+    let constants: Option<Vec<f64>> =
+        scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
     match (constants, scene.dimension) {
         (Some(values), _) => Ok(ratio(values.into_iter())),
         (None, 1) => sampled_contrast_in::<1>(scene),

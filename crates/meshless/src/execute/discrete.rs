@@ -84,7 +84,20 @@ impl<const D: usize> Discrete<D> {
         let conditions = boundary.at_nodes(scene, &cloud)?;
         let jumps = build::jumps::<D>(scene);
         seconds.stencils = start.elapsed().as_secs_f64();
-        Ok(Self { domain, regions, cloud, labels, eta, radius, lists, materials, source, boundary, conditions, jumps })
+        Ok(Self {
+            domain,
+            regions,
+            cloud,
+            labels,
+            eta,
+            radius,
+            lists,
+            materials,
+            source,
+            boundary,
+            conditions,
+            jumps,
+        })
     }
 
     /// The problem as methods see it.

@@ -27,7 +27,12 @@ pub(super) fn against_coarser<const D: usize>(
     let coarse = match solve_in::<D>(&coarse_scene, &plan.companion(), &mut Silent) {
         Ok(coarse) => coarse,
         // A region or a gap that the coarser cloud does not resolve is no fault of the scene.
-        Err(error) => return Ok(Estimate { l2: None, why_not: Some(format!("no solution at twice the spacing: {error}")) }),
+        Err(error) => {
+            return Ok(Estimate {
+                l2: None,
+                why_not: Some(format!("no solution at twice the spacing: {error}")),
+            });
+        }
     };
     let problem = fine.discrete.problem();
     let sampler = Sampler::new(&problem, &fine.system.u)?;
@@ -47,9 +52,10 @@ pub(super) fn against_coarser<const D: usize>(
             }
         }
     }
-    let smooth = !plan.effects.iter().any(|e| {
-        matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump)
-    });
+    let smooth = !plan
+        .effects
+        .iter()
+        .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
     let order = if smooth { plan.method.gfdm.strong.degree as i32 } else { 1 };
     Ok(Estimate { l2: Some(norms.l2() / (RATIO.powi(order) - 1.0)), why_not: None })
 }

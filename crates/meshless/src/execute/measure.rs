@@ -41,7 +41,8 @@ pub(super) fn errors<const D: usize>(
 /// Where u is determined only up to a constant: gives it the mean of the exact solution.
 pub(super) fn match_means<const D: usize>(solved: &mut Solved<D>, exact: &Exact<D>) {
     let volumes = &solved.discretization.volumes;
-    let difference = solved.system.u.iter().zip(&exact.values).zip(volumes).map(|((u, e), v)| v * (e - u)).sum::<f64>();
+    let difference =
+        solved.system.u.iter().zip(&exact.values).zip(volumes).map(|((u, e), v)| v * (e - u)).sum::<f64>();
     let shift = difference / volumes.iter().sum::<f64>();
     solved.system.u.iter_mut().for_each(|u| *u += shift);
 }

@@ -59,24 +59,34 @@ struct Solved<const D: usize> {
     seconds: Seconds,
 }
 
-fn solve_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solved<D>, Error> {
+fn solve_in<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    progress: &mut dyn Progress,
+) -> Result<Solved<D>, Error> {
     let mut seconds = Seconds::default();
     let discrete = Discrete::build(scene, plan, progress, &mut seconds)?;
     let problem = discrete.problem();
     progress.stage(if plan.runs(Stage::Cells) { Stage::Cells } else { Stage::LaplacianStencils });
     let start = Instant::now();
-    let discretization = discrete.method(plan).discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
+    let discretization =
+        discrete.method(plan).discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
     seconds.stencils += discretization.stencil_seconds;
     seconds.assembly = start.elapsed().as_secs_f64() - discretization.stencil_seconds;
     progress.stage(Stage::Solve);
     let start = Instant::now();
-    let params = SystemParams { solver: plan.solver.clone(), split_floating: plan.runs(Stage::FloatingConstants) };
+    let params =
+        SystemParams { solver: plan.solver.clone(), split_floating: plan.runs(Stage::FloatingConstants) };
     let system = solve(&problem, &discretization, &params).map_err(|e| discrete.explain(scene, e))?;
     seconds.solve = start.elapsed().as_secs_f64();
     Ok(Solved { discrete, discretization, system, seconds })
 }
 
-fn execute_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solution, Error> {
+fn execute_in<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    progress: &mut dyn Progress,
+) -> Result<Solution, Error> {
     let start = Instant::now();
     let mut solved = solve_in::<D>(scene, plan, progress)?;
     let mut seconds = solved.seconds.clone();
@@ -111,7 +121,8 @@ fn execute_in<const D: usize>(scene: &Scene, plan: &Plan, progress: &mut dyn Pro
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, &solved)).transpose()?;
     seconds.post += before.elapsed().as_secs_f64();
     seconds.total = start.elapsed().as_secs_f64();
-    let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), &solved.discretization.kinds);
+    let field =
+        NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), &solved.discretization.kinds);
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
     Ok(Solution { report, field, picture })
 }

@@ -31,7 +31,11 @@ pub struct Picture {
 }
 
 pub(super) fn draw<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<Picture, Error> {
-    let svg = if D == 1 { profile(scene, solved)?.to_svg(WIDTH, PROFILE_HEIGHT)? } else { plane(scene, solved)?.to_svg(WIDTH)? };
+    let svg = if D == 1 {
+        profile(scene, solved)?.to_svg(WIDTH, PROFILE_HEIGHT)?
+    } else {
+        plane(scene, solved)?.to_svg(WIDTH)?
+    };
     Ok(Picture { svg })
 }
 
@@ -54,7 +58,13 @@ fn profile<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<Profile,
     } else {
         Vec::new()
     };
-    Ok(Profile { title: scene.title.clone(), x_label: "x".to_owned(), u_label: "u".to_owned(), regions, exact })
+    Ok(Profile {
+        title: scene.title.clone(),
+        x_label: "x".to_owned(),
+        u_label: "u".to_owned(),
+        regions,
+        exact,
+    })
 }
 
 fn plane<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<FieldPicture, Error> {
@@ -87,7 +97,9 @@ fn plane<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<FieldPictu
             },
         )
         .unzip();
-    let levels = |level: &(dyn Fn(&[f64; D]) -> f64 + Sync)| (0..nx * ny).into_par_iter().map(|k| level(&at(k))).collect();
+    let levels = |level: &(dyn Fn(&[f64; D]) -> f64 + Sync)| {
+        (0..nx * ny).into_par_iter().map(|k| level(&at(k))).collect()
+    };
     let title = match D {
         3 => format!("{} (z = {:.3})", scene.title, middle[D - 1]),
         _ => scene.title.clone(),

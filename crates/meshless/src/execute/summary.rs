@@ -67,8 +67,14 @@ pub(super) fn report<const D: usize>(
 
 /// How far the solution leaves the range of its Dirichlet values, where a maximum principle says that it must not.
 fn overshoot(plan: &Plan, conditions: &[Vec<Condition>], min: f64, max: f64) -> Option<f64> {
-    let forced = plan.effects.iter().any(|e| matches!(e, Effect::Source | Effect::ValueJump | Effect::FluxJump | Effect::Robin));
-    let fluxes = conditions.iter().flatten().any(|c| matches!(*c, Condition::Neumann(g) | Condition::Flux(g) if g != 0.0));
+    let forced = plan
+        .effects
+        .iter()
+        .any(|e| matches!(e, Effect::Source | Effect::ValueJump | Effect::FluxJump | Effect::Robin));
+    let fluxes = conditions
+        .iter()
+        .flatten()
+        .any(|c| matches!(*c, Condition::Neumann(g) | Condition::Flux(g) if g != 0.0));
     let (low, high) = range(conditions.iter().flatten().filter_map(|c| match *c {
         Condition::Dirichlet(value) => Some(value),
         _ => None,

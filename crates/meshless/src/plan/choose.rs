@@ -23,9 +23,10 @@ pub(super) const FLOATING_CONTRAST: f64 = 10.0;
 
 pub(super) fn method(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error> {
     let (name, why) = match scene.method.name {
-        MethodName::Auto if survey.has_interface() => {
-            (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere".to_owned())
-        }
+        MethodName::Auto if survey.has_interface() => (
+            MethodName::GfdmHybrid,
+            "something jumps at an interface: balances there, stencils elsewhere".to_owned(),
+        ),
         MethodName::Auto => (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned()),
         name => (name, "asked for by the scene".to_owned()),
     };
@@ -61,7 +62,12 @@ pub(super) fn solver(scene: &Scene, unknowns: f64) -> SolverParams {
         SolverName::Auto | SolverName::Multigrid if direct => SolverKind::Direct,
         SolverName::Auto | SolverName::Multigrid => SolverKind::BiCgStab { l: 2 },
     };
-    SolverParams { kind, preconditioner: PreconditionerKind::Ilu0, tolerance: TOLERANCE, ..SolverParams::default() }
+    SolverParams {
+        kind,
+        preconditioner: PreconditionerKind::Ilu0,
+        tolerance: TOLERANCE,
+        ..SolverParams::default()
+    }
 }
 
 pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Vec<Stage>, Vec<Skipped>) {
@@ -76,8 +82,8 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     };
     let exact = scene.regions.iter().all(|r| r.exact.is_some());
     let gfdm = &method.gfdm;
-    let conservative_boundary =
-        gfdm.conservative_neumann && survey.has(|e| matches!(e, Effect::Neumann | Effect::Flux | Effect::Robin));
+    let conservative_boundary = gfdm.conservative_neumann
+        && survey.has(|e| matches!(e, Effect::Neumann | Effect::Flux | Effect::Robin));
     let stencils = gfdm.selection != Selection::All;
     let variable = !survey.uniform;
     let selects = matches!(gfdm.selection, Selection::Flagged | Selection::FlaggedAndNeighbors);
@@ -86,8 +92,16 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(scene.regions.len() > 1, Stage::Regions, "there is one region");
     decide(variable, Stage::Diffusivity, "the diffusivity is one constant");
     decide(survey.has(|e| matches!(e, Effect::Source)), Stage::Source, "the scene has no source");
-    decide(stencils && !variable, Stage::LaplacianStencils, if stencils { "the diffusivity varies" } else { "every row is conservative" });
-    decide(stencils && variable, Stage::DiffusionStencils, if stencils { "the diffusivity is one constant" } else { "every row is conservative" });
+    decide(
+        stencils && !variable,
+        Stage::LaplacianStencils,
+        if stencils { "the diffusivity varies" } else { "every row is conservative" },
+    );
+    decide(
+        stencils && variable,
+        Stage::DiffusionStencils,
+        if stencils { "the diffusivity is one constant" } else { "every row is conservative" },
+    );
     decide(selects && stencils, Stage::NodeSelection, "the method does not mix rows");
     decide(selects || !stencils || conservative_boundary, Stage::Cells, "no row is conservative");
     decide(true, Stage::Assembly, "");

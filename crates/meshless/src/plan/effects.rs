@@ -79,7 +79,8 @@ pub(super) struct Survey {
 
 impl Survey {
     pub(super) fn of(scene: &Scene) -> Result<Self, Error> {
-        let constants: Vec<Option<f64>> = scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
+        let constants: Vec<Option<f64>> =
+            scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
         let uniform = constants[0].is_some() && constants.iter().all(|&c| c == constants[0]);
         let contrast = if uniform { 1.0 } else { build::sampled_contrast(scene)? };
         let mut effects = Vec::new();
@@ -97,7 +98,10 @@ impl Survey {
         note(any(|c| matches!(c, ConditionSpec::Neumann(_))), Effect::Neumann);
         note(any(|c| matches!(c, ConditionSpec::Flux(_))), Effect::Flux);
         note(any(|c| matches!(c, ConditionSpec::Robin { .. })), Effect::Robin);
-        note(!any(|c| matches!(c, ConditionSpec::Dirichlet(_) | ConditionSpec::Robin { .. })), Effect::PureNeumann);
+        note(
+            !any(|c| matches!(c, ConditionSpec::Dirichlet(_) | ConditionSpec::Robin { .. })),
+            Effect::PureNeumann,
+        );
         note(!scene.holes.is_empty(), Effect::Holes);
         note(build::is_curved(scene), Effect::CurvedBoundary);
         note(scene.points.spacing.expr.as_constant().is_none(), Effect::GradedCloud);

@@ -107,7 +107,15 @@ impl Plan {
         let predicted = predict::predict(scene, &survey, &method)?;
         let solver = choose::solver(scene, predicted.unknowns);
         let (stages, skipped) = choose::stages(scene, &survey, &method);
-        Ok(Self { dimension: scene.dimension, effects: survey.effects, method, solver, stages, skipped, predicted })
+        Ok(Self {
+            dimension: scene.dimension,
+            effects: survey.effects,
+            method,
+            solver,
+            stages,
+            skipped,
+            predicted,
+        })
     }
 
     /// Whether a stage will run.
@@ -118,7 +126,12 @@ impl Plan {
     /// The same plan without what a coarser companion solve does not need.
     pub(crate) fn companion(&self) -> Self {
         let mut plan = self.clone();
-        plan.stages.retain(|s| !matches!(s, Stage::Gradient | Stage::Errors | Stage::Probes | Stage::Estimate | Stage::Vtu | Stage::Plot));
+        plan.stages.retain(|s| {
+            !matches!(
+                s,
+                Stage::Gradient | Stage::Errors | Stage::Probes | Stage::Estimate | Stage::Vtu | Stage::Plot
+            )
+        });
         plan
     }
 }

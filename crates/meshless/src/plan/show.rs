@@ -48,7 +48,11 @@ impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "dimension   {}", self.dimension)?;
         let effects: Vec<String> = self.effects.iter().map(ToString::to_string).collect();
-        writeln!(f, "effects     {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") })?;
+        writeln!(
+            f,
+            "effects     {}",
+            if effects.is_empty() { "none".to_owned() } else { effects.join(", ") }
+        )?;
         writeln!(f, "method      {} ({})", self.method.name.as_str(), self.method.why)?;
         writeln!(f, "solver      {}", self.solver_name())?;
         let stages: Vec<&str> = self.stages.iter().map(|s| s.name()).collect();

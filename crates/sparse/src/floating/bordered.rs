@@ -56,7 +56,11 @@ impl Bordered {
                 return Err(MatrixError::RowOutOfRange { row, nrows: matrix.n() });
             }
             if !value.is_finite() {
-                return Err(MatrixError::BadNumber { what: "coefficient of an extra unknown", node: row, value });
+                return Err(MatrixError::BadNumber {
+                    what: "coefficient of an extra unknown",
+                    node: row,
+                    value,
+                });
             }
         }
         for (cluster, node) in pinned.iter().enumerate() {
@@ -64,7 +68,10 @@ impl Bordered {
                 return Err(MatrixError::RowOutOfRange { row: *node as usize, nrows: matrix.n() });
             }
             if pinned[..cluster].contains(node) {
-                return Err(MatrixError::NoPin { cluster, reason: "its node is pinned for another one already" });
+                return Err(MatrixError::NoPin {
+                    cluster,
+                    reason: "its node is pinned for another one already",
+                });
             }
         }
         Ok(Self { matrix, columns, pinned, rhs })

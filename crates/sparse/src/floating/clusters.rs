@@ -63,7 +63,13 @@ pub fn clusters(components: &[ComponentInfo], adjacency: &[Vec<u32>], threshold:
             && set.level > graph.highest_outside(&set.members)
         {
             let parent = parent.map(|p| p as u32);
-            found.push(Cluster { members: set.members, parent, factor: 1.0, own: Vec::new(), scales: Vec::new() });
+            found.push(Cluster {
+                members: set.members,
+                parent,
+                factor: 1.0,
+                own: Vec::new(),
+                scales: Vec::new(),
+            });
         }
     }
     assign_scales(&graph, &mut found);

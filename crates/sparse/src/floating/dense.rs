@@ -18,7 +18,8 @@ impl DenseLu {
     /// [`SolveError::Undetermined`] with the column that has no pivot.
     pub(crate) fn new(mut a: Vec<Vec<f64>>) -> Result<Self, SolveError> {
         let n = a.len();
-        let mut size: Vec<f64> = a.iter().map(|row| row.iter().fold(0.0, |m: f64, v| m.max(v.abs()))).collect();
+        let mut size: Vec<f64> =
+            a.iter().map(|row| row.iter().fold(0.0, |m: f64, v| m.max(v.abs()))).collect();
         let mut order: Vec<usize> = (0..n).collect();
         for k in 0..n {
             let relative = |i: usize| a[i][k].abs() / size[i];

@@ -97,7 +97,9 @@ impl Split {
             for &k in cluster.members.iter().filter(|&&k| (k as usize) < components) {
                 groups[k as usize].chain.push(ChainLink { cluster: c as u32, factor: cluster.factor });
             }
-            for (&k, &scale) in cluster.own.iter().zip(&cluster.scales).filter(|(k, _)| (**k as usize) < components) {
+            for (&k, &scale) in
+                cluster.own.iter().zip(&cluster.scales).filter(|(k, _)| (**k as usize) < components)
+            {
                 groups[k as usize].scale = scale;
                 owner[k as usize] = Some(c);
             }
@@ -114,7 +116,9 @@ impl Split {
             }
         }
         let pinned = inner.iter().zip(&first).enumerate().map(|(cluster, (inner, first))| {
-            inner.or(*first).ok_or(MatrixError::NoPin { cluster, reason: "no node lies in its own components" })
+            inner
+                .or(*first)
+                .ok_or(MatrixError::NoPin { cluster, reason: "no node lies in its own components" })
         });
         Self::new(component.to_vec(), groups, pinned.collect::<Result<_, _>>()?)
     }

@@ -20,7 +20,10 @@ impl Jacobi {
         matrix.require_square()?;
         let diagonal = matrix.diagonal();
         let replaced = diagonal.iter().filter(|&&d| d == 0.0).count();
-        Ok(Self { inverse: diagonal.iter().map(|&d| if d == 0.0 { 1.0 } else { 1.0 / d }).collect(), replaced })
+        Ok(Self {
+            inverse: diagonal.iter().map(|&d| if d == 0.0 { 1.0 } else { 1.0 / d }).collect(),
+            replaced,
+        })
     }
 }
 

@@ -62,7 +62,8 @@ impl Factors {
     fn checked(kind: Kind, matrix: &Csr) -> Result<Self, SolveError> {
         let mut factors = Self { kind, condition: 0.0 };
         let n = matrix.nrows();
-        let largest_row = (0..n).map(|i| matrix.row(i).1.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
+        let largest_row =
+            (0..n).map(|i| matrix.row(i).1.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
         let mut z: Vec<f64> = (0..n as u64).map(|i| if mixed_bit(i) { 1.0 } else { -1.0 }).collect();
         for _step in 0..2 {
             factors.apply(&mut z);

@@ -74,7 +74,9 @@ pub enum SolveError {
         condition: f64,
     },
     /// One of the extra unknowns of a bordered system is not determined.
-    #[error("extra unknown {extra} is not determined by the equations; is its cluster cut off from all others?")]
+    #[error(
+        "extra unknown {extra} is not determined by the equations; is its cluster cut off from all others?"
+    )]
     Undetermined {
         /// Index of the extra unknown.
         extra: usize,

@@ -144,7 +144,8 @@ pub(crate) fn iterate(
         let size = norm(&residual);
         run.keep_best(size);
         let backward_error = || a.backward_error(&run.x, b);
-        if size <= params.tolerance * run.unit && params.backward_error.is_none_or(|e| backward_error() <= e) {
+        if size <= params.tolerance * run.unit && params.backward_error.is_none_or(|e| backward_error() <= e)
+        {
             let backward_error = backward_error();
             let info = run.info(size / run.unit, backward_error, m);
             return Ok((run.x, info));
@@ -197,7 +198,13 @@ impl Run {
     }
 
     /// Whether to go on after a cycle that did not meet the tolerance.
-    fn judge(&mut self, end: CycleEnd, size: f64, last: f64, params: &SolverParams) -> Result<(), SolveError> {
+    fn judge(
+        &mut self,
+        end: CycleEnd,
+        size: f64,
+        last: f64,
+        params: &SolverParams,
+    ) -> Result<(), SolveError> {
         let least = if end == CycleEnd::Restart { LEAST_GAIN_RESTART } else { LEAST_GAIN };
         self.without_gain = if size <= least * last { 0 } else { self.without_gain + 1 };
         let residual = self.best_size / self.unit;
