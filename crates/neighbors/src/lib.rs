@@ -1,8 +1,10 @@
 //! Neighbour lists of point clouds in one, two and three dimensions.
 //!
 //! [`within_radius`] finds all points within an interaction radius, the same for all or one for each, by sorting the
-//! points into cells; [`nearest`] finds a number of nearest points by a k-d tree. Both give [`NeighborLists`], which
-//! own their invariants: no point is its own neighbour, none is listed twice. [`CellList`] answers single queries.
+//! points into nested grids of cells: its work is in proportion to what it finds, for any density. [`nearest`] finds a
+//! number of nearest points by a k-d tree. Both give [`NeighborLists`], which own their invariants: no point is its own
+//! neighbour, none is listed twice. [`CellList`] answers queries around any position. Points that are not finite or
+//! coincide and points without neighbours are errors that name them and say what would do.
 //!
 //! **Not for** clouds that change point by point, and not for more than a few dimensions.
 //!

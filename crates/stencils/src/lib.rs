@@ -6,6 +6,10 @@
 //! to apply the operator to a weighted least-squares polynomial. Where the plain factorisation is not safe a
 //! rank-revealing one takes its place; an operator that the support does not determine is an error with its figures.
 //!
+//! Polynomials to degree p make a derivative of order k converge with order p + 1 - k: for second order of a Laplacian
+//! take degree 3, or degree 2 where supports are symmetric about their node. [`build_stencils`] does all points of a
+//! cloud in parallel; [`LocalFit::diagnose`] tells good stencils from bad ones.
+//!
 //! **Not for** finding supports (see `meshless-neighbors`), and not for interpolation of large data sets.
 //!
 //! # Example

@@ -10,7 +10,9 @@ use proptest::prelude::*;
 fn factored<const D: usize>(support: &Support<D>, degree: usize) -> (LocalFit<D>, FitScratch<D>) {
     let fit = LocalFit::<D>::new(FitParams { degree, ..FitParams::default() });
     let mut scratch = fit.scratch(0);
-    let outcome = fit.factor(&support.offsets, &support.weights, support.radius, &mut scratch).unwrap();
+    let outcome = fit
+        .factor(&support.offsets, &support.weights, support.radius, &mut scratch)
+        .expect("a valid support");
     assert!(!outcome.pivoted && outcome.rank == fit.monomials().count(), "{outcome:?}");
     (fit, scratch)
 }
@@ -47,7 +49,7 @@ fn all_of_order<const D: usize>(degree: usize, radius: f64) -> Vec<Functional<D>
 /// Stencils applied to every monomial give the exact value.
 fn reproduces<const D: usize>(support: &Support<D>, degree: usize) -> Result<(), TestCaseError> {
     for functional in all_of_order(degree, support.radius) {
-        let c = stencil(support, degree, &functional).unwrap();
+        let c = stencil(support, degree, &functional).expect("a stencil");
         for exponents in Monomials::<D>::new(degree).exponents() {
             let monomial = |x: &[f64; D]| (0..D).map(|k| x[k].powi(i32::from(exponents[k]))).product::<f64>();
             let terms = || support.offsets.iter().zip(&c).map(|(x, c)| c * monomial(x));
@@ -67,7 +69,7 @@ fn reproduces<const D: usize>(support: &Support<D>, degree: usize) -> Result<(),
 /// Coefficients agree with the definition, to round-off times the condition of the support.
 fn equals_reference<const D: usize>(support: &Support<D>, degree: usize) -> Result<(), TestCaseError> {
     for functional in all_of_order(degree, support.radius) {
-        let c = stencil(support, degree, &functional).unwrap();
+        let c = stencil(support, degree, &functional).expect("a stencil");
         let (expected, condition) = reference(support, degree, &functional);
         let difference = (DVector::from_vec(c) - &expected).amax();
         prop_assert!(difference <= 1e-13 * condition * expected.amax(), "{:?}: {}", functional, difference);

@@ -12,7 +12,7 @@ fn lattice(reach: i32) -> Vec<[f64; 2]> {
 fn fit<const D: usize>(degree: usize, offsets: &[[f64; D]]) -> (LocalFit<D>, FitScratch<D>) {
     let fit = LocalFit::new(FitParams { degree, ..FitParams::default() });
     let mut scratch = fit.scratch(offsets.len());
-    fit.factor(offsets, &vec![1.0; offsets.len()], 1.0, &mut scratch).unwrap();
+    fit.factor(offsets, &vec![1.0; offsets.len()], 1.0, &mut scratch).expect("a valid support");
     (fit, scratch)
 }
 
@@ -126,9 +126,9 @@ fn laplacian_error(degree: usize, h: f64, support: impl Fn(usize) -> Vec<[f64; 2
         let weights: Vec<f64> =
             offsets.iter().map(|x| Weight::Exponential.value(length(x), radius, radius)).collect();
         let mut scratch = fit.scratch(offsets.len());
-        fit.factor(&offsets, &weights, radius, &mut scratch).unwrap();
+        fit.factor(&offsets, &weights, radius, &mut scratch).expect("a valid support");
         let mut c = vec![0.0; offsets.len()];
-        fit.coefficients(&Functional::Laplacian, &mut scratch, &mut c).unwrap();
+        fit.coefficients(&Functional::Laplacian, &mut scratch, &mut c).expect("a stencil");
         (applied(&c, &offsets, u) - exact).powi(2)
     });
     (squares.sum::<f64>() / 20.0).sqrt()

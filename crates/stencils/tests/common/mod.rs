@@ -74,7 +74,7 @@ pub(crate) fn reference<const D: usize>(
     let a = weighted_moments(support, degree).transpose();
     let svd = a.svd(true, true);
     let condition = svd.singular_values.max() / svd.singular_values.min();
-    let y = svd.solve(&b, 1e-13 * svd.singular_values.max()).unwrap();
+    let y = svd.solve(&b, 1e-13 * svd.singular_values.max()).expect("both factors");
     let c = DVector::from_iterator(y.len(), y.iter().zip(&support.weights).map(|(y, w)| y * w));
     (c, condition)
 }
