@@ -23,7 +23,7 @@ const fn example(name: &'static str, spacing: &'static str, l2: f64) -> Example 
 /// has at this spacing.
 const EXAMPLES: [Example; 14] = [
     example("ball", "0.16", 9e-3),
-    example("chip", "0.1", 5e-2),
+    example("chip", "0.1", 1.6e-2),
     example("curved", "0.08", 2e-2),
     example("electrode", "0.08", 1.4e-2),
     example("inclusion", "0.08", 1.6e-2),
@@ -67,20 +67,28 @@ fn the_table_names_every_file() {
 
 #[test]
 fn every_example_is_solved_within_its_error() {
+    let mut wrong = Vec::new();
     for Example { name, spacing, l2 } in EXAMPLES {
         let report = solve(name, spacing);
-        assert_eq!(report.errors.is_some(), l2.is_some(), "{name}");
-        if let (Some(errors), Some(bound)) = (&report.errors, l2) {
-            assert!(errors.l2 <= bound, "{name}: {errors:?}, expected l2 below {bound:e}");
+        let error = report.errors.as_ref().map(|e| e.l2);
+        // Not a number fails, too; and a scene has an exact solution if and only if the table has a bound.
+        if error.is_some() != l2.is_some() || !error.zip(l2).is_none_or(|(e, bound)| e <= bound) {
+            wrong.push(format!("{name}: error {error:?}, expected at most {l2:?}"));
         }
-        assert!(report.estimate.l2.is_some_and(|e| e > 0.0 && e < 0.5), "{name}: {:?}", report.estimate);
-        assert!(report.solver.residual < 1e-9, "{name}: {:?}", report.solver);
+        if !report.estimate.l2.is_some_and(|e| e > 0.0 && e < 0.5) {
+            wrong.push(format!("{name}: {:?}", report.estimate));
+        }
+        let solved = report.solver.residual < 1e-9;
+        if !solved {
+            wrong.push(format!("{name}: {:?}", report.solver));
+        }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
 fn estimates_are_of_the_size_of_the_errors() {
-    for name in ["ball", "curved", "inclusion", "membrane", "pipe"] {
+    for name in ["ball", "chip", "curved", "inclusion", "membrane", "pipe"] {
         let Example { spacing, .. } = EXAMPLES.iter().find(|e| e.name == name).unwrap();
         let report = solve(name, spacing);
         let ratio = report.estimate.l2.unwrap() / report.errors.unwrap().l2;
@@ -96,15 +104,63 @@ fn grains_that_touch_no_electrode_float() {
 
 /// What the format knows, as it is written in a scene; each is shown by some example.
 const FEATURES: &[&str] = &[
-    "dimension = 1", "dimension = 2", "dimension = 3", "[domain]", "[points]", "[[holes]]", "[[regions]]",
-    "[[interfaces]]", "[[boundaries]]", "[[probes]]", "[method]", "[output]", "box = {", "sphere = {", "cylinder = {",
-    "length = ", "polygon = [", "half_space = {", "level_set = ", "union = [", "intersection = [", "difference = [",
-    "bounds = {", "spacing = 0", "spacing = \"", "\"grid\"", "\"jittered\"", "\"irregular\"", "seed = ",
-    "diffusivity = ", "source = ", "exact = ", "between = [", "jump = ", "flux_jump = ", "face = \"all\"",
-    "face = \"outer\"", "where = ", "dirichlet = ", "neumann = ", "flux = ", "robin = {", "name = \"gfdm-classical\"",
-    "name = \"gfdm-hybrid\"", "name = \"gfdm-conservative\"", "order = ", "solver = ", "support = ", "smoothing = ",
-    "log_scaling = ", "correction = ", "conservative_neumann = ", "selection_tolerance = ", "at = [", "vtu = true",
-    "plot = true", "if(",
+    "dimension = 1",
+    "dimension = 2",
+    "dimension = 3",
+    "[domain]",
+    "[points]",
+    "[[holes]]",
+    "[[regions]]",
+    "[[interfaces]]",
+    "[[boundaries]]",
+    "[[probes]]",
+    "[method]",
+    "[output]",
+    "box = {",
+    "sphere = {",
+    "cylinder = {",
+    "length = ",
+    "polygon = [",
+    "half_space = {",
+    "level_set = ",
+    "union = [",
+    "intersection = [",
+    "difference = [",
+    "bounds = {",
+    "spacing = 0",
+    "spacing = \"",
+    "\"grid\"",
+    "\"jittered\"",
+    "\"irregular\"",
+    "seed = ",
+    "diffusivity = ",
+    "source = ",
+    "exact = ",
+    "between = [",
+    "jump = ",
+    "flux_jump = ",
+    "face = \"all\"",
+    "face = \"outer\"",
+    "where = ",
+    "dirichlet = ",
+    "neumann = ",
+    "flux = ",
+    "robin = {",
+    "name = \"gfdm-classical\"",
+    "name = \"gfdm-hybrid\"",
+    "name = \"gfdm-conservative\"",
+    "order = ",
+    "solver = ",
+    "support = ",
+    "smoothing = ",
+    "log_scaling = ",
+    "correction = ",
+    "conservative_neumann = ",
+    "selection_tolerance = ",
+    "at = [",
+    "vtu = true",
+    "plot = true",
+    "if(",
 ];
 
 #[test]

@@ -61,14 +61,17 @@ fn every_example_that_it_names_exists() {
 #[test]
 fn every_cargo_command_names_what_there_is() {
     let text = readme();
-    let commands: Vec<String> = blocks(&text, "sh").iter().flat_map(|b| b.lines().map(str::to_owned).collect::<Vec<_>>()).collect();
+    let commands: Vec<String> =
+        blocks(&text, "sh").iter().flat_map(|b| b.lines().map(str::to_owned).collect::<Vec<_>>()).collect();
     assert!(commands.len() >= 3, "{commands:?}");
     for command in commands {
         let words: Vec<&str> = command.split_whitespace().collect();
         match words[..] {
             ["cargo", "xtask", task, ..] => assert!(["verify", "bench", "tidy"].contains(&task), "{command}"),
             ["cargo", "test", "--workspace"] => {}
-            ["cargo", "install", "--path", path] => assert!(root().join(path).join("Cargo.toml").is_file(), "{command}"),
+            ["cargo", "install", "--path", path] => {
+                assert!(root().join(path).join("Cargo.toml").is_file(), "{command}")
+            }
             _ => panic!("no test knows the command `{command}`"),
         }
     }

@@ -25,7 +25,8 @@ fn alike(shown: &str, printed: &str) -> bool {
     if first(shown).is_some_and(|word| VARYING.contains(&word.as_str())) {
         return first(shown) == first(printed);
     }
-    let words = |line: &str| line.split([' ', ',', '(', ')', '[', ']', ':']).map(str::to_owned).collect::<Vec<_>>();
+    let words =
+        |line: &str| line.split([' ', ',', '(', ')', '[', ']', ':']).map(str::to_owned).collect::<Vec<_>>();
     let (a, b) = (words(shown), words(printed));
     a.len() == b.len()
         && a.iter().zip(&b).all(|(a, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
@@ -48,8 +49,11 @@ fn commands_print_what_the_readme_shows() {
     for console in consoles {
         let (command, shown) = console.split_once('\n').unwrap();
         let arguments: Vec<&str> = command.strip_prefix("$ meshless ").unwrap().split_whitespace().collect();
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_meshless")).args(&arguments).current_dir(folder.path()).output().unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_meshless"))
+            .args(&arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
         let printed = if output.status.success() { output.stdout } else { output.stderr };
         let printed = String::from_utf8(printed).unwrap();
         assert_eq!(shown.lines().count(), printed.lines().count(), "`{command}` prints\n{printed}");
