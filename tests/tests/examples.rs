@@ -48,7 +48,7 @@ fn scene(name: &str) -> Scene {
 
 fn solve(name: &str, spacing: &str) -> Report {
     let mut scene = scene(name);
-    Overrides { spacing: Some(spacing), ..Overrides::default() }.apply(&mut scene).unwrap();
+    Overrides { spacing: Some(spacing), ..Overrides::default() }.apply(&mut scene).expect("a spacing");
     let plan = Plan::new(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
     execute(&scene, &plan, &mut Silent).unwrap_or_else(|error| panic!("{name}: {error}")).report
 }

@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 }
 
 fn readme() -> String {
-    std::fs::read_to_string(root().join("README.md")).unwrap()
+    std::fs::read_to_string(root().join("README.md")).expect("README.md")
 }
 
 /// The contents of the blocks in a language.

@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 0.02;
 const VARYING: [&str; 3] = ["seconds", "solver", "predicted"];
 
 fn readme() -> String {
-    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).unwrap()
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).expect("README.md")
 }
 
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
