@@ -1,29 +1,37 @@
 //! Sparse systems in difference form: assembly, elimination, floating constants, direct and Krylov solvers.
 //!
-//! - [`Csr`]: compressed rows with indices of four bytes; parallel product; as `sprs` sees it without a copy.
-//! - [`DifferenceMatrix`]: rows as off-diagonal entries and row sums, which keeps what ten orders of magnitude of
-//!   contrast would round away.
-//! - [`Prepared`]: factor or precondition once, solve many times; sparse LU with refinement, BiCGStab(l), GMRES; stopped
-//!   by the true residual, with what was reached in every error.
-//! - [`floating_clusters`] and [`Split`]: the constants of stiff regions that touch no prescribed value.
+//! - [`Csr`]: compressed rows with 32-bit columns, built from rows in parallel; products in parallel.
+//! - [`DifferenceMatrix`]: rows as `sum_j a_ij (u_j - u_i) + r_i u_i`, which keeps what ten orders of magnitude of contrast
+//!   would round away; elimination of prescribed values; signs and sums ([`MatrixReport`]).
+//! - [`solve`] and [`Prepared`]: sparse LU or `L L^T` with refinement, BiCGStab(l), GMRES, conjugate gradients, all stopped by
+//!   the true residual; [`Preconditioner`]s.
+//! - [`clusters`], [`Split`], [`Bordered`]: the constants of stiff regions that nothing prescribed holds, as unknowns of
+//!   their own; [`pure_neumann`] for problems that nothing holds at all.
 //!
-//! **Not for** dense or distributed systems, and not for eigenvalues.
+//! Results do not depend on the number of threads: sums run over blocks of fixed size.
 //!
-//! # Example
+//! This crate is *not* for dense systems beyond a few rows, for eigenvalues, for complex numbers, or for matrices that
+//! are spread over several machines; and it knows nothing of nodes' positions.
 //!
 //! ```
-//! use meshless_sparse::{DifferenceMatrix, Prepared, SolverParams};
+//! use meshless_sparse::{DifferenceMatrix, SolverParams, solve};
 //!
-//! // -u'' = 2 on (0, 1) with u(0) = u(1) = 0, on four inner nodes.
-//! let h: f64 = 0.2;
+//! // -u'' = 2 on (0, 1) with u = 0 at both ends, on six nodes.
+//! let a = -25.0; // -1 / h^2
 //! let rows = DifferenceMatrix::from_rows(6, |i, row| {
-//!     if i > 0 { row.push(i - 1, -1.0 / (h * h)); }
-//!     if i < 5 { row.push(i + 1, -1.0 / (h * h)); }
+//!     if i > 0 {
+//!         row.push(i - 1, a);
+//!     }
+//!     if i < 5 {
+//!         row.push(i + 1, a);
+//!     }
 //! })?;
-//! let known: Vec<Option<f64>> = (0..6).map(|i| (i == 0 || i == 5).then_some(0.0)).collect();
+//! let known: Vec<_> = (0..6).map(|i| (i == 0 || i == 5).then_some(0.0)).collect();
 //! let reduced = rows.eliminate(&known, &[2.0; 6])?;
-//! let (u, info) = Prepared::new(&reduced.matrix.to_csr(), &SolverParams::default())?.solve(&reduced.rhs)?;
-//! assert!((u[0] - 0.2 * 0.8).abs() < 1e-14 && info.residual < 1e-14);
+//! assert!(reduced.matrix.report(None)?.is_m_matrix);
+//!
+//! let (u, info) = solve(&reduced.matrix.to_csr(), &reduced.rhs, &SolverParams::default())?;
+//! assert!((u[0] - 0.2 * 0.8).abs() < 1e-15 && info.backward_error < 1e-15);
 //! # Ok::<(), meshless_sparse::SolveError>(())
 //! ```
 

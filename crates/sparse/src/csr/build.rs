@@ -140,7 +140,15 @@ impl Csr {
         ncols: usize,
         fill: impl Fn(usize, &mut RowBuilder) + Sync,
     ) -> Result<Self, MatrixError> {
-        Self::try_from_rows(nrows, ncols, || (), |(), i, row| Ok(fill(i, row)))
+        Self::try_from_rows(
+            nrows,
+            ncols,
+            || (),
+            |(), i, row| {
+                fill(i, row);
+                Ok(())
+            },
+        )
     }
 
     /// Like [`Csr::from_rows`], with a closure that may fail and scratch for each task, which is made by `scratch`

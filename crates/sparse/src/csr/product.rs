@@ -4,7 +4,7 @@ use super::Csr;
 use rayon::prelude::*;
 
 /// Rows that one task works through. A row's result does not depend on it.
-pub(crate) const ROWS_PER_TASK: usize = 2048;
+const ROWS_PER_TASK: usize = 2048;
 
 /// `y[i] = f(i)` for every row, in parallel where there is enough to do.
 #[inline]

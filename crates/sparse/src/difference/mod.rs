@@ -29,7 +29,14 @@ impl DifferenceMatrix {
     /// # Errors
     /// A column that is not below `n`, or a value that is not finite, with its row.
     pub fn from_rows(n: usize, fill: impl Fn(usize, &mut RowBuilder) + Sync) -> Result<Self, MatrixError> {
-        Self::try_from_rows(n, || (), |(), i, row| Ok(fill(i, row)))
+        Self::try_from_rows(
+            n,
+            || (),
+            |(), i, row| {
+                fill(i, row);
+                Ok(())
+            },
+        )
     }
 
     /// Like [`DifferenceMatrix::from_rows`], with a closure that may fail and scratch for each task.

@@ -24,7 +24,7 @@ impl DenseLu {
         for k in 0..n {
             let relative = |i: usize| a[i][k].abs() / size[i];
             let best = (k..n).max_by(|&i, &j| relative(i).total_cmp(&relative(j))).unwrap_or(k);
-            if !(relative(best) > PIVOT_FLOOR) || !a[best][k].is_finite() {
+            if relative(best).is_nan() || relative(best) <= PIVOT_FLOOR || a[best][k].is_infinite() {
                 return Err(SolveError::Undetermined { extra: k });
             }
             a.swap(k, best);

@@ -67,7 +67,7 @@ impl State {
             if size <= cycle.target {
                 return CycleEnd::Claimed;
             }
-            if !(size <= GROWTH_LIMIT * start) {
+            if size.is_nan() || size > GROWTH_LIMIT * start {
                 return CycleEnd::BreakDown("the residual of the recurrence grew without bound");
             }
         }

@@ -29,7 +29,7 @@ pub(crate) struct Factors {
 }
 
 enum Kind {
-    Lu(Lu<usize, f64>),
+    Lu(Box<Lu<usize, f64>>),
     Llt(Llt<usize, f64>),
 }
 
@@ -179,7 +179,7 @@ fn factorise_lu(matrix: &Csr) -> Result<Kind, SolveError> {
     let view = columns.view();
     let symbolic = SymbolicLu::try_new(view.symbolic()).map_err(out_of_memory(columns.n))?;
     match Lu::try_new_with_symbolic(symbolic, view) {
-        Ok(lu) => Ok(Kind::Lu(lu)),
+        Ok(lu) => Ok(Kind::Lu(Box::new(lu))),
         Err(LuError::SymbolicSingular { index }) => {
             Err(SolveError::Singular { row: index, condition: f64::INFINITY })
         }

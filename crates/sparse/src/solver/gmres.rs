@@ -29,7 +29,7 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
         let before = norm(&w);
         let mut column = orthogonalise(&basis, &mut w, before);
         let length = norm(&w);
-        let exhausted = !(length > EXHAUSTED * before);
+        let exhausted = length.is_nan() || length <= EXHAUSTED * before;
         column.push(if exhausted { 0.0 } else { length });
         let size = triangle.push(column);
         cycle.record(size);
