@@ -275,8 +275,8 @@ impl Polyhedron {
     }
 }
 
-/// Vertices are counted in 32 bits; a cell has some dozens.
-#[expect(clippy::cast_possible_truncation)]
+/// Vertices are counted in 32 bits.
+#[expect(clippy::cast_possible_truncation, reason = "a cell has some dozens of vertices")]
 fn index(count: usize) -> u32 {
     count as u32
 }

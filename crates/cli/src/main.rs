@@ -1,5 +1,12 @@
 //! The `meshless` command: scenes in, fields with their errors out.
-#![allow(clippy::print_stdout)] // the command's business is to print
+
+/// Prints a line; a reader that has gone away, as after `| head`, is no error.
+macro_rules! say {
+    ($($arg:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($arg)*);
+    }};
+}
 
 mod args;
 mod methods;

@@ -5,9 +5,9 @@ use meshless::METHODS;
 use crate::Failure;
 
 pub(crate) fn run() -> Result<(), Failure> {
-    println!("{:<24} {:<6} {:<10} limits", "method", "order", "dimensions");
+    say!("{:<24} {:<6} {:<10} limits", "method", "order", "dimensions");
     for method in METHODS {
-        println!("{:<24} {:<6} {:<10} {}", method.name, method.order, method.dimensions, method.limits);
+        say!("{:<24} {:<6} {:<10} {}", method.name, method.order, method.dimensions, method.limits);
     }
     Ok(())
 }

@@ -38,7 +38,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let scene = Scene::read(&args.scene).map_err(meshless::Error::from)?;
     let plan = Plan::new(&scene)?;
     if !args.json {
-        println!("{}\n{plan}", scene.title);
+        say!("{}\n{plan}", scene.title);
         return Ok(());
     }
     let json = PlanJson {
@@ -56,6 +56,6 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
             memory_mb: plan.predicted.memory_mb,
         },
     };
-    println!("{}", serde_json::to_string(&json).map_err(|e| Failure::failed(e.to_string()))?);
+    say!("{}", serde_json::to_string(&json).map_err(|e| Failure::failed(e.to_string()))?);
     Ok(())
 }

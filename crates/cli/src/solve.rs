@@ -28,10 +28,10 @@ pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
     let files = write_outputs(&plan, &solution, &args.out, &stem)?;
     if args.json {
         let json = serde_json::to_string(&solution.report).map_err(|e| Failure::failed(e.to_string()))?;
-        println!("{json}");
+        say!("{json}");
     } else {
         print(&solution.report, &solution);
-        files.iter().for_each(|file| println!("wrote       {}", file.display()));
+        files.iter().for_each(|file| say!("wrote       {}", file.display()));
     }
     Ok(())
 }
@@ -64,48 +64,60 @@ fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) 
 }
 
 fn print(report: &Report, solution: &Solution) {
-    println!("{}", report.title);
-    println!(
+    say!("{}", report.title);
+    say!(
         "method      {} (order {}), {} unknowns, spacing {:.4}",
-        report.method, report.order, report.unknowns, report.spacing
+        report.method,
+        report.order,
+        report.unknowns,
+        report.spacing
     );
     let nodes = &report.nodes;
-    println!(
+    say!(
         "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",
-        nodes.strong, nodes.conservative, nodes.strong_boundary, nodes.dirichlet
+        nodes.strong,
+        nodes.conservative,
+        nodes.strong_boundary,
+        nodes.dirichlet
     );
-    println!("contrast    {:.3e}", report.contrast);
-    println!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
+    say!("contrast    {:.3e}", report.contrast);
+    say!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
     let solver = &report.solver;
-    println!(
-        "solver      {}, {} iterations, residual {:.1e}",
-        solver.name, solver.iterations, solver.residual
-    );
+    say!("solver      {}, {} iterations, residual {:.1e}", solver.name, solver.iterations, solver.residual);
     if let Some(errors) = &report.errors {
-        println!(
+        say!(
             "error       l2 {:.3e}, linf {:.3e}, gradient linf {:.3e}",
-            errors.l2, errors.linf, errors.gradient_linf
+            errors.l2,
+            errors.linf,
+            errors.gradient_linf
         );
         if errors.regions.len() > 1 {
             for (name, region) in &errors.regions {
-                println!("  {name:<10} l2 {:.3e}, linf {:.3e}", region.l2, region.linf);
+                say!("  {name:<10} l2 {:.3e}, linf {:.3e}", region.l2, region.linf);
             }
         }
     }
     match (report.estimate.l2, &report.estimate.why_not) {
-        (Some(l2), _) => println!("estimate    l2 {l2:.3e}"),
-        (None, Some(why)) => println!("estimate    none: {why}"),
+        (Some(l2), _) => say!("estimate    l2 {l2:.3e}"),
+        (None, Some(why)) => say!("estimate    none: {why}"),
         (None, None) => {}
     }
     let s = &report.seconds;
-    println!(
+    say!(
         "seconds     {:.3}: points {:.3}, neighbors {:.3}, stencils {:.3}, assembly {:.3}, solve {:.3}, post {:.3}, estimate {:.3}",
-        s.total, s.points, s.neighbors, s.stencils, s.assembly, s.solve, s.post, s.estimate
+        s.total,
+        s.points,
+        s.neighbors,
+        s.stencils,
+        s.assembly,
+        s.solve,
+        s.post,
+        s.estimate
     );
     for probe in &solution.report.probes {
         match probe.value {
-            Some(value) => println!("probe       {:?}: {value:.8e}", probe.at),
-            None => println!("probe       {:?}: outside of the domain", probe.at),
+            Some(value) => say!("probe       {:?}: {value:.8e}", probe.at),
+            None => say!("probe       {:?}: outside of the domain", probe.at),
         }
     }
 }

@@ -46,7 +46,7 @@ impl Overrides<'_> {
         if let Some(name) = self.method {
             scene.method.name = MethodName::parse(name).map_err(|reason| OverrideError::Method {
                 name: name.to_owned(),
-                reason: reason.to_string(),
+                reason: format!("{reason}; {}", reason.help()),
             })?;
         }
         if let Some(order) = self.order {

@@ -140,11 +140,12 @@ pub(crate) fn missing_condition<const D: usize>(
     node: usize,
     x: &[f64],
 ) -> Error {
-    let faces: Vec<String> = cloud
-        .boundary_of(node)
-        .map(|b| b.touches.iter().map(|t| format!("face {}", t.face.0)).collect())
-        .unwrap_or_default();
-    let message = format!("no boundary condition holds at {x:?} ({})", faces.join(", "));
+    let names = scene.faces();
+    let touches = cloud.boundary_of(node).map_or(&[][..], |b| &b.touches);
+    let faces: Vec<&str> = touches.iter().filter_map(|t| names.get(t.face.0 as usize).copied()).collect();
+    // Adding zero turns -0.0 into 0.0.
+    let place: Vec<f64> = x.iter().map(|c| c + 0.0).collect();
+    let message = format!("no boundary condition holds at {place:?} (face {})", faces.join(", "));
     scene
         .error_at_boundaries(
             message,

@@ -44,14 +44,23 @@ pub(super) fn against_coarser<const D: usize>(
         .par_iter()
         .map_init(|| sampler.scratch(), |scratch, x| sampler.at(x, scratch).map(|s| (s.value, s.region)))
         .collect();
+    let differences: Vec<(f64, f64, f64)> = (values.iter().zip(&measures).enumerate())
+        .filter_map(|(i, (value, &measure))| {
+            let (value, region) = (*value)?;
+            (region == coarse.discrete.labels[i]).then(|| (measure, coarse.system.u[i] - value, value))
+        })
+        .collect();
+    // Where nothing fixes the constant of u, only what differs beside a constant is an error.
+    let shift = if fine.system.up_to_constant {
+        let total: f64 = differences.iter().map(|d| d.0).sum();
+        differences.iter().map(|d| d.0 * d.1).sum::<f64>() / total
+    } else {
+        0.0
+    };
     let mut norms = ErrorNorms::default();
-    for (i, value) in values.iter().enumerate() {
-        if let Some((value, region)) = value {
-            if *region == coarse.discrete.labels[i] {
-                norms.add(measures[i], coarse.system.u[i] - value, *value);
-            }
-        }
-    }
+    differences
+        .iter()
+        .for_each(|&(measure, difference, value)| norms.add(measure, difference - shift, value));
     let smooth = !plan
         .effects
         .iter()
