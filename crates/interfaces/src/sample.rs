@@ -77,10 +77,10 @@ impl<'a, const D: usize> Sampler<'a, D> {
         let mut radius = self.problem.supports.radius[nearest];
         for _ in 0..MAX_SEARCHES {
             self.gather(x, region, radius, scratch);
-            if scratch.own.len() >= wanted {
-                if let Some(sample) = self.fit(0, x, region, radius, scratch) {
-                    return Some(sample);
-                }
+            if scratch.own.len() >= wanted
+                && let Some(sample) = self.fit(0, x, region, radius, scratch)
+            {
+                return Some(sample);
             }
             radius *= 1.5;
         }

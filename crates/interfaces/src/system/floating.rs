@@ -3,7 +3,7 @@
 use meshless_geometry::RegionGraph;
 use meshless_sparse::{Cluster, ComponentInfo, DEFAULT_THRESHOLD, DifferenceMatrix, Split, clusters};
 
-use crate::{MethodError, Problem, adjacent_pairs};
+use crate::{Condition, MethodError, Problem, adjacent_pairs};
 
 /// The change of unknowns for a problem; `None` where nothing floats. `nodes` names the node of every unknown.
 pub(super) fn split<const D: usize>(
@@ -42,7 +42,7 @@ fn component_infos<const D: usize>(problem: &Problem<'_, D>, graph: &RegionGraph
         info.eta_max = info.eta_max.max(eta);
     }
     for (node, conditions) in problem.cloud.boundary().iter().zip(problem.conditions) {
-        if conditions.iter().any(|c| c.anchors()) {
+        if conditions.iter().any(Condition::anchors) {
             infos[graph.component_of(node.node) as usize].touches_fixed = true;
         }
     }

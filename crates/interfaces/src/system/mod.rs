@@ -81,7 +81,7 @@ fn solve_unanchored(
     let (mut u, lambda, info) = (solved.values, solved.lambda, solved.info);
     let total: f64 = volumes.iter().sum();
     let defect = if size > 0.0 { (lambda * total / size).abs() } else { 0.0 };
-    if !(defect <= COMPATIBILITY) {
+    if defect.is_nan() || defect > COMPATIBILITY {
         return Err(MethodError::Incompatible { defect });
     }
     let mean = u.iter().zip(volumes).map(|(u, v)| u * v).sum::<f64>() / total;
