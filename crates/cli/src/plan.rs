@@ -1,6 +1,6 @@
 //! `meshless plan`.
 
-use meshless::plan::Plan;
+use meshless::plan::{Effect, Plan};
 use meshless::scene::Scene;
 use serde::Serialize;
 
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let json = PlanJson {
         title: &scene.title,
         dimension: plan.dimension,
-        effects: plan.effects.iter().map(|e| e.name()).collect(),
+        effects: plan.effects.iter().map(Effect::name).collect(),
         method: plan.method.name.as_str(),
         why: &plan.method.why,
         solver: plan.solver_name(),
