@@ -9,13 +9,25 @@ use meshless_tests::solve::solve_with;
 fn ladder(spacings: &[f64], method: MethodName, text: impl Fn(f64) -> String) -> Vec<(f64, f64)> {
     spacings
         .iter()
-        .map(|&h| (h, solve_with(&text(h), method).unwrap().report.errors.unwrap().l2))
+        .map(|&h| {
+            (
+                h,
+                solve_with(&text(h), method)
+                    .expect("the scene can be solved")
+                    .report
+                    .errors
+                    .expect("the scene can be solved")
+                    .l2,
+            )
+        })
         .collect()
 }
 
 #[test]
 fn the_classical_method_is_of_second_order_where_nothing_jumps() {
-    for (dimension, spacings) in [(1, &[0.05, 0.025, 0.0125][..]), (2, &[0.1, 0.05, 0.025]), (3, &[0.2, 0.1, 0.07])] {
+    for (dimension, spacings) in
+        [(1, &[0.05, 0.025, 0.0125][..]), (2, &[0.1, 0.05, 0.025]), (3, &[0.2, 0.1, 0.07])]
+    {
         for robin in [false, true] {
             let ladder = ladder(spacings, MethodName::GfdmClassical, |h| smooth(dimension, h, robin));
             let order = observed(&ladder);

@@ -5,13 +5,19 @@ use meshless_tests::kraus;
 use meshless_tests::solve::{solve_scene, solve_with};
 
 fn l2(text: &str) -> f64 {
-    solve_with(text, MethodName::GfdmHybrid).unwrap().report.errors.unwrap().l2
+    solve_with(text, MethodName::GfdmHybrid)
+        .expect("the scene can be solved")
+        .report
+        .errors
+        .expect("the scene can be solved")
+        .l2
 }
 
 #[test]
 fn the_error_does_not_depend_on_the_jump() {
     for case in [kraus::interior as fn(f64, f64, u64) -> String, kraus::two_strip] {
-        let errors: Vec<f64> = [1e4, 1e6, 1e8, 1e10, 1e12].iter().map(|&jump| l2(&case(jump, 0.1, 2))).collect();
+        let errors: Vec<f64> =
+            [1e4, 1e6, 1e8, 1e10, 1e12].iter().map(|&jump| l2(&case(jump, 0.1, 2))).collect();
         let (low, high) = errors.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
         assert!(high <= 2.0 * low, "{errors:?}");
     }
@@ -21,10 +27,15 @@ fn the_error_does_not_depend_on_the_jump() {
 fn the_three_strips_need_conservative_neumann_conditions() {
     let text = kraus::three_strip(1e6, 1e-4, 0.05, 1);
     let conservative = l2(&text);
-    let mut scene = Scene::parse(&text, "three.toml").unwrap();
+    let mut scene = Scene::parse(&text, "three.toml").expect("the scene can be solved");
     scene.method.name = MethodName::GfdmHybrid;
     scene.method.options.conservative_neumann = Some(false);
-    let strong = solve_scene(&scene).unwrap().report.errors.unwrap().l2;
+    let strong = solve_scene(&scene)
+        .expect("the scene can be solved")
+        .report
+        .errors
+        .expect("the scene can be solved")
+        .l2;
     assert!(conservative < 2e-3, "{conservative}");
     assert!(strong > 5.0 * conservative, "{strong} against {conservative}");
 }
@@ -32,18 +43,28 @@ fn the_three_strips_need_conservative_neumann_conditions() {
 #[test]
 fn the_maximum_principle_holds_at_every_jump() {
     for jump in [1e2, 1e6, 1e10] {
-        let interior = solve_with(&kraus::interior(jump, 0.1, 3), MethodName::GfdmHybrid).unwrap().report;
+        let interior = solve_with(&kraus::interior(jump, 0.1, 3), MethodName::GfdmHybrid)
+            .expect("the scene can be solved")
+            .report;
         assert!(interior.extrema.min >= -1e-10, "{jump:e}: {}", interior.extrema.min);
         assert!(interior.matrix.wrong_sign <= 1e-12, "{jump:e}: {}", interior.matrix.wrong_sign);
-        let strips = solve_with(&kraus::two_strip(jump, 0.1, 3), MethodName::GfdmHybrid).unwrap().report;
-        assert!(strips.matrix.overshoot.unwrap() <= 1e-10, "{jump:e}: {:?}", strips.matrix.overshoot);
+        let strips = solve_with(&kraus::two_strip(jump, 0.1, 3), MethodName::GfdmHybrid)
+            .expect("the scene can be solved")
+            .report;
+        assert!(
+            strips.matrix.overshoot.expect("the scene can be solved") <= 1e-10,
+            "{jump:e}: {:?}",
+            strips.matrix.overshoot
+        );
     }
 }
 
 #[test]
 fn conservative_rows_and_columns_sum_to_zero() {
     for jump in [1.0, 1e4, 1e10] {
-        let report = solve_with(&kraus::interior(jump, 0.1, 4), MethodName::GfdmConservative).unwrap().report;
+        let report = solve_with(&kraus::interior(jump, 0.1, 4), MethodName::GfdmConservative)
+            .expect("the scene can be solved")
+            .report;
         assert!(report.matrix.row_sum <= 1e-12, "{jump:e}: {}", report.matrix.row_sum);
         assert!(report.matrix.column_sum <= 1e-12, "{jump:e}: {}", report.matrix.column_sum);
     }
@@ -74,30 +95,33 @@ fn nested_stiff_regions_float_together_and_apart() {
     for (inner, ring, bound) in
         [(1e10, 1e5, 0.02), (1e5, 1e10, 0.02), (1.0, 1e10, 0.02), (1e12, 1.0, 0.02), (1e-6, 1e6, 0.08)]
     {
-        let report = solve_with(&rings(inner, ring), MethodName::GfdmHybrid).unwrap().report;
+        let report =
+            solve_with(&rings(inner, ring), MethodName::GfdmHybrid).expect("the scene can be solved").report;
         assert!(report.solver.floating_constants >= 1, "{inner:e}, {ring:e}");
-        let errors = report.errors.unwrap();
+        let errors = report.errors.expect("the scene can be solved");
         assert!(errors.l2 < bound, "{inner:e}, {ring:e}: {errors:?}");
     }
 }
 
 #[test]
 fn a_soft_ring_makes_an_ordinary_core_float() {
-    let report = solve_with(&rings(1.0, 1e-10), MethodName::GfdmHybrid).unwrap().report;
+    let report =
+        solve_with(&rings(1.0, 1e-10), MethodName::GfdmHybrid).expect("the scene can be solved").report;
     assert_eq!(report.solver.floating_constants, 1);
-    assert!(report.errors.unwrap().l2 < 0.08);
+    assert!(report.errors.expect("the scene can be solved").l2 < 0.08);
 }
 
 #[test]
 fn nodes_on_the_interface_belong_to_the_region_named_first() {
-    let mut scene = Scene::parse(&kraus::two_strip(1e8, 0.15, 1), "grid.toml").unwrap();
+    let mut scene =
+        Scene::parse(&kraus::two_strip(1e8, 0.15, 1), "grid.toml").expect("the scene can be solved");
     scene.points.layout = LayoutName::Grid; // 40 divisions: a column of nodes lies on x = 0
-    let solution = solve_scene(&scene).unwrap();
+    let solution = solve_scene(&scene).expect("the scene can be solved");
     let on: Vec<u16> = (0..solution.field.u.len())
         .filter(|&i| solution.field.points[i][0].abs() < 1e-12)
         .map(|i| solution.field.region[i])
         .collect();
     assert_eq!(on.len(), 41);
     assert!(on.iter().all(|&r| r == 0));
-    assert!(solution.report.errors.unwrap().l2 < 0.03);
+    assert!(solution.report.errors.expect("the scene can be solved").l2 < 0.03);
 }

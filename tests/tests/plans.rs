@@ -7,8 +7,8 @@ use meshless::{Silent, execute};
 use meshless_tests::small::Small;
 
 fn plan(small: &Small) -> Plan {
-    let scene = Scene::parse(&small.text(), "small.toml").unwrap();
-    Plan::new(&scene).unwrap()
+    let scene = Scene::parse(&small.text(), "small.toml").expect("the scene can be solved");
+    Plan::new(&scene).expect("the scene can be solved")
 }
 
 #[test]
@@ -38,8 +38,14 @@ fn every_effect_adds_its_own_stages_and_no_others() {
     };
     assert_eq!(added(Small { source: Some("1"), ..Small::default() }), [Stage::Source]);
     assert_eq!(added(Small { source: Some("0"), ..Small::default() }), []);
-    assert_eq!(added(Small { outside: "1 + x", ..Small::default() }), [Stage::Diffusivity, Stage::DiffusionStencils]);
-    assert_eq!(added(Small { extra: "[[probes]]\nat = [0.5, 0.5]\n\n", ..Small::default() }), [Stage::Probes]);
+    assert_eq!(
+        added(Small { outside: "1 + x", ..Small::default() }),
+        [Stage::Diffusivity, Stage::DiffusionStencils]
+    );
+    assert_eq!(
+        added(Small { extra: "[[probes]]\nat = [0.5, 0.5]\n\n", ..Small::default() }),
+        [Stage::Probes]
+    );
     assert_eq!(added(Small { extra: "[output]\nplot = true\n\n", ..Small::default() }), [Stage::Plot]);
     assert_eq!(
         added(Small { extra: "[output]\nvtu = true\n\n", ..Small::default() }),
@@ -92,8 +98,9 @@ fn skipped_stages_have_reasons_and_are_not_also_run() {
 
 #[test]
 fn execution_builds_no_cell_where_the_plan_has_none() {
-    let scene = Scene::parse(&Small::default().text(), "small.toml").unwrap();
-    let solution = execute(&scene, &Plan::new(&scene).unwrap(), &mut Silent).unwrap();
+    let scene = Scene::parse(&Small::default().text(), "small.toml").expect("the scene can be solved");
+    let solution = execute(&scene, &Plan::new(&scene).expect("the scene can be solved"), &mut Silent)
+        .expect("the scene can be solved");
     assert_eq!(solution.report.nodes.conservative, 0);
     assert!(!solution.field.kind.contains(&RowKind::Conservative));
     assert!(solution.field.gradient.is_none());
@@ -103,9 +110,9 @@ fn execution_builds_no_cell_where_the_plan_has_none() {
 fn the_prediction_of_the_unknowns_is_close() {
     for (dimension, spacing) in [(1, "0.01"), (2, "0.02"), (3, "0.08")] {
         let small = Small { dimension, spacing, ..Small::default() };
-        let scene = Scene::parse(&small.text(), "small.toml").unwrap();
-        let plan = Plan::new(&scene).unwrap();
-        let solution = execute(&scene, &plan, &mut Silent).unwrap();
+        let scene = Scene::parse(&small.text(), "small.toml").expect("the scene can be solved");
+        let plan = Plan::new(&scene).expect("the scene can be solved");
+        let solution = execute(&scene, &plan, &mut Silent).expect("the scene can be solved");
         let ratio = plan.predicted.unknowns / solution.field.u.len() as f64;
         assert!((0.85..1.18).contains(&ratio), "{dimension}-D: {ratio}");
     }

@@ -41,12 +41,12 @@ plot = true
 "#;
 
 fn meshless(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meshless")).args(args).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_meshless")).args(args).output().expect("the command starts")
 }
 
 fn scene_in(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("scene.toml");
-    std::fs::write(&path, text).unwrap();
+    std::fs::write(&path, text).expect("the folder can be written");
     path
 }
 
@@ -56,10 +56,15 @@ fn stderr(output: &Output) -> String {
 
 /// Runs a scene that is wrong and returns what is said about it.
 fn refused(text: &str) -> String {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let scene = scene_in(folder.path(), text);
     let out = folder.path().join("out");
-    let output = meshless(&["solve", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let output = meshless(&[
+        "solve",
+        scene.to_str().expect("a plain path"),
+        "--out",
+        out.to_str().expect("a plain path"),
+    ]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     let written = std::fs::read_dir(&out).map(Iterator::count).unwrap_or(0);
     assert_eq!(written, 0, "output of a scene that was refused");
