@@ -46,7 +46,11 @@ impl Small {
             self.dimension,
             row("0.0"),
             row("1.0"),
-            if self.spacing.parse::<f64>().is_ok() { self.spacing.to_owned() } else { format!("\"{}\"", self.spacing) },
+            if self.spacing.parse::<f64>().is_ok() {
+                self.spacing.to_owned()
+            } else {
+                format!("\"{}\"", self.spacing)
+            },
             self.layout,
         );
         let source = self.source.map_or(String::new(), |s| format!("source = \"{s}\"\n"));

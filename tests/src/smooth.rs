@@ -4,11 +4,7 @@
 pub fn smooth(dimension: usize, spacing: f64, robin: bool) -> String {
     let (exact, source, corner) = match dimension {
         1 => ("sin(2*x)", "4*(1 + x)*sin(2*x) - 2*cos(2*x)", "[1.0]"),
-        2 => (
-            "sin(2*x)*cos(y)",
-            "5*(1 + x)*sin(2*x)*cos(y) - 2*cos(2*x)*cos(y)",
-            "[1.0, 1.0]",
-        ),
+        2 => ("sin(2*x)*cos(y)", "5*(1 + x)*sin(2*x)*cos(y) - 2*cos(2*x)*cos(y)", "[1.0, 1.0]"),
         _ => (
             "sin(2*x)*cos(y)*exp(z)",
             "4*(1 + x)*sin(2*x)*cos(y)*exp(z) - 2*cos(2*x)*cos(y)*exp(z)",
@@ -19,7 +15,9 @@ pub fn smooth(dimension: usize, spacing: f64, robin: bool) -> String {
     let tail = exact.replace("sin(2*x)", "");
     // At x = 1: u + eta du/dx with eta = 2.
     let robin = if robin {
-        format!("[[boundaries]]\nface = \"right\"\nrobin = {{ a = \"1\", b = \"1\", g = \"(sin(2) + 4*cos(2)){tail}\" }}\n\n")
+        format!(
+            "[[boundaries]]\nface = \"right\"\nrobin = {{ a = \"1\", b = \"1\", g = \"(sin(2) + 4*cos(2)){tail}\" }}\n\n"
+        )
     } else {
         String::new()
     };

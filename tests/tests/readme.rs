@@ -70,7 +70,7 @@ fn every_cargo_command_names_what_there_is() {
             ["cargo", "xtask", task, ..] => assert!(["verify", "bench", "tidy"].contains(&task), "{command}"),
             ["cargo", "test", "--workspace"] => {}
             ["cargo", "install", "--path", path] => {
-                assert!(root().join(path).join("Cargo.toml").is_file(), "{command}")
+                assert!(root().join(path).join("Cargo.toml").is_file(), "{command}");
             }
             _ => panic!("no test knows the command `{command}`"),
         }

@@ -9,5 +9,7 @@ pub fn curved(left: f64, right: f64, h: f64, seed: u64) -> String {
     head(&format!("Curved interface, {left:e} above and {right:e} below"), h, seed)
         + &region("above", Some("2*x^3 - y"), left, Some(SOURCE), &format!("{SHAPE}/{left:e}"))
         + &region("below", None, right, Some(SOURCE), &format!("{SHAPE}/{right:e}"))
-        + &format!("[[boundaries]]\nface = \"all\"\ndirichlet = \"{SHAPE}/if(y > 2*x^3, {left:e}, {right:e})\"\n")
+        + &format!(
+            "[[boundaries]]\nface = \"all\"\ndirichlet = \"{SHAPE}/if(y > 2*x^3, {left:e}, {right:e})\"\n"
+        )
 }

@@ -7,7 +7,13 @@ pub fn interior(jump: f64, h: f64, seed: u64) -> String {
     const PHI: &str = "cos(pi*x/2)*cos(pi*y/2)";
     let source = format!("pi^2/2*{PHI}");
     head(&format!("Interior interface, jump {jump:e}"), h, seed)
-        + &region("inside", Some(&format!("0.75 - {PHI}")), jump, Some(&source), &format!("({PHI} - 0.75)/{jump:e} + 0.75"))
+        + &region(
+            "inside",
+            Some(&format!("0.75 - {PHI}")),
+            jump,
+            Some(&source),
+            &format!("({PHI} - 0.75)/{jump:e} + 0.75"),
+        )
         + &region("outside", None, 1.0, Some(&source), PHI)
         + "[[boundaries]]\nface = \"all\"\ndirichlet = \"0\"\n"
 }

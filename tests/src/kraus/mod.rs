@@ -30,7 +30,13 @@ fn head(title: &str, h: f64, seed: u64) -> String {
 }
 
 /// A region; `level_set` is `None` for the background, `source` where there is none.
-fn region(name: &str, level_set: Option<&str>, diffusivity: f64, source: Option<&str>, exact: &str) -> String {
+fn region(
+    name: &str,
+    level_set: Option<&str>,
+    diffusivity: f64,
+    source: Option<&str>,
+    exact: &str,
+) -> String {
     let mut text = format!("[[regions]]\nname = \"{name}\"\n");
     if let Some(level_set) = level_set {
         text += &format!("level_set = \"{level_set}\"\n");
