@@ -179,8 +179,8 @@ mod tests {
 
     #[test]
     fn the_correction_minimises_the_row_relative_to_its_diagonal() {
-        let row = [3.0, -1.0, 2.0, 0.5];
-        let xi = [-0.4, -0.2, -0.3, -0.1];
+        let row = [1.0, 1.0, 1.0, -0.2];
+        let xi = [-0.4, -0.4, -0.3, 0.1];
         let ratio = |alpha: f64| {
             let diagonal = -row.iter().sum::<f64>() + alpha;
             row.iter().zip(xi).map(|(c, x)| (c + alpha * x).powi(2)).sum::<f64>() / diagonal.powi(2)
