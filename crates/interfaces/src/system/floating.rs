@@ -5,26 +5,57 @@ use meshless_sparse::{Cluster, ComponentInfo, DEFAULT_THRESHOLD, DifferenceMatri
 
 use crate::{Condition, MethodError, Problem, adjacent_pairs};
 
+/// The change of unknowns for a problem in which something floats.
+pub(super) struct Floating {
+    pub(super) split: Split,
+    /// An unknown in no floating region, about the middle of the list; `None` where all are in one.
+    pub(super) free: Option<usize>,
+}
+
 /// The change of unknowns for a problem; `None` where nothing floats. `nodes` names the node of every unknown.
 pub(super) fn split<const D: usize>(
     problem: &Problem<'_, D>,
     matrix: &DifferenceMatrix,
     nodes: &[u32],
-) -> Result<Option<Split>, MethodError> {
+) -> Result<Option<Floating>, MethodError> {
+    if !levels_differ(problem) {
+        return Ok(None);
+    }
     let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
     let graph = RegionGraph::new(problem.cloud, problem.labels, &pairs)?;
-    let components = component_infos(problem, &graph);
-    let adjacency: Vec<Vec<u32>> = (0..components.len() as u32).map(|c| graph.touching(c).to_vec()).collect();
+    let count = graph.components().len();
+    let mut components = component_infos(problem, &graph);
+    let mut adjacency: Vec<Vec<u32>> = (0..count as u32).map(|c| graph.touching(c).to_vec()).collect();
+    add_surroundings(problem, &graph, &mut components, &mut adjacency);
     let found = clusters(&components, &adjacency, DEFAULT_THRESHOLD);
     if found.is_empty() {
         return Ok(None);
     }
     let component: Vec<u32> = nodes.iter().map(|&node| graph.component_of(node)).collect();
-    if !all_have_unknowns(&found, &component, components.len()) {
+    if !all_have_unknowns(&found, &component, count) {
         // A cluster of prescribed values alone has no constant to solve for; the nodal values do for such a scene.
         return Ok(None);
     }
-    Ok(Some(Split::from_clusters(matrix, &component, components.len(), &found)?))
+    let split = Split::from_clusters(matrix, &component, count, &found)?;
+    let floats = |i: usize| found.iter().any(|cluster| cluster.members.binary_search(&component[i]).is_ok());
+    let free = (0..nodes.len()).cycle().skip(nodes.len() / 2).take(nodes.len()).find(|&i| !floats(i));
+    Ok(Some(Floating { split, free }))
+}
+
+/// Whether anything can float at all: the graph of regions is not built otherwise.
+fn levels_differ<const D: usize>(problem: &Problem<'_, D>) -> bool {
+    let robin = problem.conditions.iter().flatten().filter_map(|c| robin_level(problem, c));
+    let levels = problem.eta.iter().copied().chain(robin);
+    let (low, high) = levels.fold((f64::INFINITY, 0.0_f64), |(l, h), level| (l.min(level), h.max(level)));
+    high > DEFAULT_THRESHOLD * low
+}
+
+/// The diffusivity that the surroundings of the domain would have if they reached as far as the domain and passed as
+/// much as a Robin condition does: where it is small beside that of the region, the region floats (a small Biot number).
+fn robin_level<const D: usize>(problem: &Problem<'_, D>, condition: &Condition) -> Option<f64> {
+    let Condition::Robin { a, b, .. } = *condition else { return None };
+    let level = (a / b).abs() * problem.domain.bounds().diameter();
+    (level > 0.0 && level.is_finite()).then_some(level)
 }
 
 fn all_have_unknowns(found: &[Cluster], component: &[u32], components: usize) -> bool {
@@ -42,9 +73,27 @@ fn component_infos<const D: usize>(problem: &Problem<'_, D>, graph: &RegionGraph
         info.eta_max = info.eta_max.max(eta);
     }
     for (node, conditions) in problem.cloud.boundary().iter().zip(problem.conditions) {
-        if conditions.iter().any(Condition::anchors) {
+        if conditions.iter().any(|c| matches!(c, Condition::Dirichlet(_))) {
             infos[graph.component_of(node.node) as usize].touches_fixed = true;
         }
     }
     infos
+}
+
+/// Adds, for every component with Robin conditions, what it exchanges with: a component of its own, which is fixed.
+fn add_surroundings<const D: usize>(
+    problem: &Problem<'_, D>,
+    graph: &RegionGraph,
+    components: &mut Vec<ComponentInfo>,
+    adjacency: &mut Vec<Vec<u32>>,
+) {
+    let mut level_of = vec![0.0_f64; components.len()];
+    for (node, conditions) in problem.cloud.boundary().iter().zip(problem.conditions) {
+        let level = &mut level_of[graph.component_of(node.node) as usize];
+        *level = conditions.iter().filter_map(|c| robin_level(problem, c)).fold(*level, f64::max);
+    }
+    for (component, level) in (0_u32..).zip(level_of).filter(|(_, level)| *level > 0.0) {
+        components.push(ComponentInfo { eta_min: level, eta_max: level, touches_fixed: true });
+        adjacency.push(vec![component]);
+    }
 }

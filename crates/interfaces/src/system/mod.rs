@@ -2,9 +2,10 @@
 
 mod floating;
 
-use meshless_sparse::{SolveInfo, SolverParams, Split, pure_neumann};
+use meshless_sparse::{SolveInfo, SolverParams, Split};
 
 use crate::{Discretization, MethodError, Problem};
+use floating::Floating;
 
 /// Part of sources and fluxes that may be left over in a pure Neumann problem, relative to their size: a scene that
 /// balances does so up to the discretisation error of its integrals.
@@ -48,13 +49,15 @@ pub fn solve<const D: usize>(
     discretization: &Discretization,
     params: &SystemParams,
 ) -> Result<SystemSolution, MethodError> {
-    if !problem.is_anchored() {
-        return solve_unanchored(discretization, params);
+    // A face without nodes of its own is seen by the cells of inner nodes only.
+    let rows = &discretization.rows;
+    if !problem.is_anchored() && (0..rows.n()).all(|i| rows.row_sum(i) == 0.0) {
+        return solve_unanchored(problem, discretization, params);
     }
     let known = problem.dirichlet();
-    let reduced = discretization.rows.eliminate(&known, &discretization.rhs)?;
+    let reduced = rows.eliminate(&known, &discretization.rhs)?;
     let split = match params.split_floating {
-        true => floating::split(problem, &reduced.matrix, &reduced.map)?,
+        true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
         false => None,
     };
     let (solution, info) = match &split {
@@ -69,16 +72,28 @@ pub fn solve<const D: usize>(
     Ok(SystemSolution { u, info, floating_constants, up_to_constant: false })
 }
 
-/// A pure Neumann problem: one node is pinned, and the extra unknown takes up what is not balanced.
-fn solve_unanchored(
+/// A pure Neumann problem: one node is pinned, and an extra unknown takes up what is not balanced.
+fn solve_unanchored<const D: usize>(
+    problem: &Problem<'_, D>,
     discretization: &Discretization,
     params: &SystemParams,
 ) -> Result<SystemSolution, MethodError> {
     let (rows, rhs, volumes) = (&discretization.rows, &discretization.rhs, &discretization.volumes);
     let size: f64 = rhs.iter().map(|b| b.abs()).sum();
-    let pin = rhs.len() / 2;
-    let solved = pure_neumann(rows, rhs, volumes, pin, &params.solver)?;
-    let (mut u, lambda, info) = (solved.values, solved.lambda, solved.info);
+    let nodes: Vec<u32> = (0..rows.n() as u32).collect();
+    let floating = match params.split_floating {
+        true => floating::split(problem, rows, &nodes)?,
+        false => None,
+    };
+    // The constants of floating regions have pins of their own, so that of the whole lies outside of them.
+    let (split, pin) = match floating {
+        Some(Floating { split, free: Some(free) }) => (split, free),
+        _ => (Split::trivial(rows.n()), rows.n() / 2),
+    };
+    let solved = split.apply_neumann(rows, rhs, volumes, pin)?.solve(&params.solver)?;
+    let (mut u, info) = (split.recover(&solved.values, &solved.extra)?, solved.info);
+    let floating_constants = split.extra();
+    let lambda = solved.extra[floating_constants];
     let total: f64 = volumes.iter().sum();
     let defect = if size > 0.0 { (lambda * total / size).abs() } else { 0.0 };
     if defect.is_nan() || defect > COMPATIBILITY {
@@ -86,5 +101,5 @@ fn solve_unanchored(
     }
     let mean = u.iter().zip(volumes).map(|(u, v)| u * v).sum::<f64>() / total;
     u.iter_mut().for_each(|u| *u -= mean);
-    Ok(SystemSolution { u, info, floating_constants: 0, up_to_constant: true })
+    Ok(SystemSolution { u, info, floating_constants, up_to_constant: true })
 }
