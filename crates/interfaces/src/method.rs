@@ -20,8 +20,8 @@ pub trait Method<const D: usize>: Sync {
 /// A linear system over the nodes, in difference form.
 #[derive(Debug, Clone)]
 pub struct Discretization {
-    /// Row i reads `sum_j a_ij (u_j - u_i) + r_i u_i = b_i`. Rows of nodes whose value is prescribed are empty:
-    /// the shared layer eliminates them.
+    /// Row i reads `sum_j a_ij (u_j - u_i) + r_i u_i = b_i`. Rows of nodes whose value is prescribed read
+    /// `u_i = value`: the shared layer eliminates them.
     pub rows: DifferenceMatrix,
     /// Right-hand side b.
     pub rhs: Vec<f64>,

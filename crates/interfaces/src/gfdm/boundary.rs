@@ -52,21 +52,14 @@ pub(super) fn collocate<const D: usize>(
     }
     let fit = NodeFit::new(DEGREE, Weight::Exponential);
     let inward = Functional::Directional(direction.map(|d| -d));
-    let supports = [problem.supports.lists.of(i).to_vec(), enlarged_support(problem, i)];
-    let mut failure = None;
-    for neighbors in supports {
-        match inward_derivative(problem, &fit, i, &neighbors, &inward) {
-            Ok(mut coefficients) => {
-                coefficients.iter_mut().for_each(|c| *c *= -problem.eta[i]);
-                return Ok(BoundaryRow { neighbors, coefficients, row_sum, rhs });
-            }
-            Err(error) => failure = Some(error),
-        }
-    }
-    Err(failure.map_or_else(
-        || MethodError::NoCondition { node: i, position: position() },
-        |source| MethodError::stencil(i, &problem.cloud.points()[i], source),
-    ))
+    let row = |neighbors: Vec<u32>| -> Result<BoundaryRow, StencilError> {
+        let mut coefficients = inward_derivative(problem, &fit, i, &neighbors, &inward)?;
+        coefficients.iter_mut().for_each(|c| *c *= -problem.eta[i]);
+        Ok(BoundaryRow { neighbors, coefficients, row_sum, rhs })
+    };
+    row(problem.supports.lists.of(i).to_vec())
+        .or_else(|_| row(enlarged_support(problem, i)))
+        .map_err(|source| MethodError::stencil(i, &problem.cloud.points()[i], source))
 }
 
 /// Coefficients of the derivative into the domain, corrected towards diagonal dominance like those of the equation:

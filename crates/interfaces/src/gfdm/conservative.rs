@@ -34,6 +34,16 @@ pub(super) struct CellBalance<'a, const D: usize> {
     planes: Vec<Plane<D>>,
     levels: Vec<(FaceId, Level<'a, D>)>,
     index: CellList<'a, D>,
+    /// The interaction radius if it is the same at all nodes.
+    uniform_radius: Option<f64>,
+}
+
+/// Memory of one thread.
+pub(super) struct BalanceScratch<'b, const D: usize> {
+    cell: CellScratch,
+    cuts: Vec<Cut<'b, D>>,
+    found: Vec<u32>,
+    candidates: Vec<(u32, [f64; D])>,
 }
 
 type Level<'a, const D: usize> = Box<dyn Fn(&[f64; D]) -> f64 + Sync + 'a>;
@@ -59,45 +69,59 @@ impl<'a, const D: usize> CellBalance<'a, D> {
                 (face, Box::new(move |x: &[f64; D]| sign * shape.level(x)) as Level<'a, D>)
             })
             .collect();
-        let reach = problem.supports.radius.iter().fold(0.0_f64, |a, &b| a.max(b));
-        let index = CellList::new(problem.cloud.points(), reach)?;
-        Ok(Self { problem, planes, levels, index })
+        let radius = problem.supports.radius;
+        let (least, most) = radius.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), &h| (l.min(h), m.max(h)));
+        let index = CellList::new(problem.cloud.points(), most)?;
+        Ok(Self { problem, planes, levels, index, uniform_radius: (least == most).then_some(most) })
+    }
+
+    /// Memory for one thread.
+    pub(super) fn scratch(&self) -> BalanceScratch<'_, D> {
+        let cuts = self.levels.iter().map(|(face, level)| Cut { level: &**level, face: face.0 }).collect();
+        BalanceScratch { cell: CellScratch::default(), cuts, found: Vec::new(), candidates: Vec::new() }
     }
 
     /// The cell of node i, clipped to the domain.
-    pub(super) fn cell(&self, i: usize, scratch: &mut CellScratch) -> Result<Cell<D>, MethodError> {
-        let points = self.problem.cloud.points();
-        let cuts: Vec<Cut<'_, D>> =
-            self.levels.iter().map(|(face, level)| Cut { level: &**level, face: face.0 }).collect();
+    pub(super) fn cell(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<Cell<D>, MethodError> {
+        let x = &self.problem.cloud.points()[i];
         let bounds = self.problem.domain.bounds();
-        let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts: &cuts };
-        let supports = self.problem.supports;
-        let neighbors = supports.lists.of(i);
-        let mut candidates: Vec<(u32, [f64; D])> =
-            neighbors.iter().map(|&j| (j, points[j as usize])).collect();
-        // Distance d2: j is listed up to (h_i + h_j) / 2, so all nodes within half of h_i + the least h_j are.
-        let least = neighbors.iter().fold(supports.radius[i], |a, &j| a.min(supports.radius[j as usize]));
-        let mut searched = 0.5 * (supports.radius[i] + least);
-        let mut found = Vec::new();
+        let BalanceScratch { cell, cuts, found, candidates } = scratch;
+        let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts };
+        let mut searched = self.problem.supports.radius[i];
+        // Radii that differ leave holes in the lists: a node whose own radius is small is listed at its neighbours only.
+        match self.uniform_radius {
+            Some(_) => self.list(self.problem.supports.lists.of(i), candidates),
+            None => self.search(i, searched, found, candidates),
+        }
         let mut searches = 1;
         loop {
-            match voronoi_cell(&points[i], &candidates, searched, &container, scratch) {
+            match voronoi_cell(x, candidates, searched, &container, cell) {
                 Err(CellError::Incomplete { needed, .. }) if searches < MAX_SEARCHES => {
                     searches += 1;
                     searched = needed.clamp(searched, 2.0 * searched);
-                    found.clear();
-                    self.index.within(&points[i], searched, &mut found);
-                    candidates.clear();
-                    candidates
-                        .extend(found.iter().filter(|&&j| j as usize != i).map(|&j| (j, points[j as usize])));
+                    self.search(i, searched, found, candidates);
                 }
-                other => return other.map_err(|e| MethodError::cell(i, &points[i], e)),
+                other => return other.map_err(|e| MethodError::cell(i, x, e)),
             }
         }
     }
 
+    /// All nodes within `radius` of node i as candidates.
+    fn search(&self, i: usize, radius: f64, found: &mut Vec<u32>, candidates: &mut Vec<(u32, [f64; D])>) {
+        found.clear();
+        self.index.within(&self.problem.cloud.points()[i], radius, found);
+        found.retain(|&j| j as usize != i);
+        self.list(found, candidates);
+    }
+
+    fn list(&self, nodes: &[u32], candidates: &mut Vec<(u32, [f64; D])>) {
+        let points = self.problem.cloud.points();
+        candidates.clear();
+        candidates.extend(nodes.iter().map(|&j| (j, points[j as usize])));
+    }
+
     /// The balance over the cell of node i.
-    pub(super) fn row(&self, i: usize, scratch: &mut CellScratch) -> Result<CellRow, MethodError> {
+    pub(super) fn row(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<CellRow, MethodError> {
         let cell = self.cell(i, scratch)?;
         let source = self.problem.source.map_or(0.0, |f| f[i]);
         let mut row = CellRow {
@@ -154,6 +178,10 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     }
 
     /// Flux through a piece of the boundary, (21).
+    ///
+    /// Conditions on the flux are taken at the centroid of the piece. Those that hold the value are taken at the foot
+    /// of the node on it, where the node itself is if it lies on the boundary: the straight way from the node to the
+    /// foot, of length d, has the resistance `d / eta`.
     fn boundary_face(
         &self,
         i: usize,
@@ -162,26 +190,36 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         row: &mut CellRow,
     ) -> Result<(), MethodError> {
         let problem = self.problem;
-        let position = || problem.cloud.points()[i].to_vec();
-        let condition = problem
-            .boundary
-            .condition(id, &face.centroid)
-            .ok_or_else(|| MethodError::NoCondition { node: i, position: position() })?;
-        if let Condition::Dirichlet(value) = condition {
-            // The cell of a node inside reaches the boundary: the value is prescribed at the foot of its distance.
-            let x = problem.cloud.points()[i];
-            let distance = (0..D).map(|k| face.normal[k] * (face.centroid[k] - x[k])).sum::<f64>().abs();
-            if distance > 0.0 {
-                let transmissibility = face.area * problem.eta[i] / distance;
+        let x = problem.cloud.points()[i];
+        let eta = problem.eta[i];
+        let at = |point: &[f64; D]| {
+            let none = || MethodError::NoCondition { node: i, position: x.to_vec() };
+            problem.boundary.condition(id, point).ok_or_else(none)
+        };
+        let to_flux = |condition: &Condition| {
+            let without_flux = || MethodError::RobinWithoutFlux { node: i, position: x.to_vec() };
+            as_flux(condition, eta).ok_or_else(without_flux)
+        };
+        let height = (0..D).map(|k| face.normal[k] * (face.centroid[k] - x[k])).sum::<f64>();
+        let foot = std::array::from_fn(|k| x[k] + height * face.normal[k]);
+        match at(&face.centroid)? {
+            Condition::Dirichlet(_) => {
+                // A piece through the node itself belongs to a node whose value is prescribed.
+                let (Condition::Dirichlet(value), true) = (at(&foot)?, height != 0.0) else { return Ok(()) };
+                let transmissibility = face.area * eta / height.abs();
                 row.row_sum += transmissibility;
                 row.rhs += transmissibility * value;
             }
-            return Ok(());
+            Condition::Robin { .. } => {
+                let (a, g) = to_flux(&at(&foot)?)?;
+                // The chord of a curved face may lie on the inner side of a node on the boundary.
+                let resistance = if a > 0.0 { height.max(0.0) / eta } else { 0.0 };
+                let area = face.area / (1.0 + a * resistance);
+                row.row_sum += area * a;
+                row.rhs += area * g;
+            }
+            condition => row.rhs += face.area * to_flux(&condition)?.1,
         }
-        let (a, g) = as_flux(&condition, problem.eta[i])
-            .ok_or_else(|| MethodError::RobinWithoutFlux { node: i, position: position() })?;
-        row.row_sum += face.area * a;
-        row.rhs += face.area * g;
         Ok(())
     }
 }

@@ -12,7 +12,6 @@ mod strong;
 
 use std::time::Instant;
 
-use meshless_cells::CellScratch;
 use meshless_sparse::DifferenceMatrix;
 use rayon::prelude::*;
 
@@ -78,7 +77,7 @@ impl Parts {
             counts.flagged = select::conservative_nodes(problem, params, &rows, &mut kinds);
             Some(rows)
         };
-        let boundary = boundary_rows(problem, &kinds)?;
+        let boundary = boundary_rows(problem, &mut kinds)?;
         let cells = cell_rows(problem, &kinds)?;
         counts.stencils += boundary.iter().flatten().count();
         counts.cells = cells.iter().flatten().count();
@@ -153,19 +152,27 @@ fn boundary_measure<const D: usize>(problem: &Problem<'_, D>, i: usize) -> f64 {
     problem.cloud.spacing()[i].powi(D as i32 - 1)
 }
 
-/// Collocated conditions, in the order of `cloud.boundary()`.
+/// Collocated conditions, in the order of `cloud.boundary()`. Nodes whose stencil would reach over a prescribed jump get a
+/// conservative row instead.
 fn boundary_rows<const D: usize>(
     problem: &Problem<'_, D>,
-    kinds: &[RowKind],
+    kinds: &mut [RowKind],
 ) -> Result<Vec<Option<BoundaryRow>>, MethodError> {
     let nodes = problem.cloud.boundary();
-    (0..nodes.len())
+    let mut rows: Vec<Option<BoundaryRow>> = (0..nodes.len())
         .into_par_iter()
         .map(|index| match kinds[nodes[index].node as usize] {
             RowKind::StrongBoundary => boundary::collocate(problem, index).map(Some),
             _ => Ok(None),
         })
-        .collect()
+        .collect::<Result<_, _>>()?;
+    for (node, row) in nodes.iter().zip(&mut rows) {
+        let i = node.node as usize;
+        if row.take_if(|row| select::crosses_a_jump(problem, i, &row.neighbors)).is_some() {
+            kinds[i] = RowKind::Conservative;
+        }
+    }
+    Ok(rows)
 }
 
 /// Balances of the conservative nodes; nothing is built where there is none.
@@ -179,9 +186,12 @@ fn cell_rows<const D: usize>(
     let balance = CellBalance::new(problem)?;
     (0..kinds.len())
         .into_par_iter()
-        .map_init(CellScratch::default, |scratch, i| match kinds[i] {
-            RowKind::Conservative => balance.row(i, scratch).map(Some),
-            _ => Ok(None),
-        })
+        .map_init(
+            || balance.scratch(),
+            |scratch, i| match kinds[i] {
+                RowKind::Conservative => balance.row(i, scratch).map(Some),
+                _ => Ok(None),
+            },
+        )
         .collect()
 }

@@ -48,7 +48,9 @@ pub(super) fn conservative_nodes<const D: usize>(
         .into_par_iter()
         .map(|i| {
             let near_flagged = || problem.supports.lists.of(i).iter().any(|&j| flagged[j as usize]);
-            flagged[i] || (neighbors_too && near_flagged()) || crosses_a_jump(problem, i)
+            let at_a_jump =
+                || kinds[i] == RowKind::Strong && crosses_a_jump(problem, i, rows.row(problem, i).0);
+            flagged[i] || (neighbors_too && near_flagged()) || at_a_jump()
         })
         .collect();
     for (kind, chosen) in kinds.iter_mut().zip(chosen) {
@@ -59,16 +61,17 @@ pub(super) fn conservative_nodes<const D: usize>(
     flagged.iter().filter(|&&f| f).count()
 }
 
-/// Whether the support of i reaches into another region.
-fn crosses_a_region<const D: usize>(problem: &Problem<'_, D>, i: usize) -> bool {
-    problem.supports.lists.of(i).iter().any(|&j| problem.labels[j as usize] != problem.labels[i])
-}
-
-/// Whether the support of i reaches over an interface where u or the flux jumps: stencils do not know of such jumps.
-fn crosses_a_jump<const D: usize>(problem: &Problem<'_, D>, i: usize) -> bool {
+/// Whether a stencil at i over `neighbors` reaches over an interface where u or the flux jumps: stencils do not know of
+/// such jumps.
+pub(super) fn crosses_a_jump<const D: usize>(problem: &Problem<'_, D>, i: usize, neighbors: &[u32]) -> bool {
     !problem.jumps.is_empty()
-        && problem.supports.lists.of(i).iter().any(|&j| {
+        && neighbors.iter().any(|&j| {
             let labels = (problem.labels[i], problem.labels[j as usize]);
             labels.0 != labels.1 && problem.jump_between(labels.0, labels.1).is_some()
         })
+}
+
+/// Whether the support of i reaches into another region.
+fn crosses_a_region<const D: usize>(problem: &Problem<'_, D>, i: usize) -> bool {
+    problem.supports.lists.of(i).iter().any(|&j| problem.labels[j as usize] != problem.labels[i])
 }

@@ -190,4 +190,13 @@ mod tests {
         let alpha = (corrected[0] - row[0]) / xi[0];
         assert!(ratio(alpha) <= ratio(alpha + 1e-3) && ratio(alpha) <= ratio(alpha - 1e-3));
     }
+
+    /// The only stationary point has a positive diagonal here: the ratio falls towards the null vector alone.
+    #[test]
+    fn a_correction_that_would_turn_the_diagonal_over_is_left_out() {
+        let row = [3.0, -1.0, 2.0, 0.5];
+        let mut corrected = row;
+        add_correction(&mut corrected, &[-0.4, -0.2, -0.3, -0.1]);
+        assert_eq!(corrected, row);
+    }
 }
