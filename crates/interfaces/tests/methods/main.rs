@@ -1,0 +1,13 @@
+//! Properties of the discretisations and of the layer below them, on problems made by hand.
+
+#![allow(clippy::unwrap_used)]
+
+mod boundary;
+mod conservation;
+mod consistency;
+mod contrast;
+mod fields;
+mod invariance;
+mod jumps;
+mod neumann;
+mod support;
