@@ -62,6 +62,14 @@ pub(crate) fn xpby(x: &[f64], beta: f64, y: &mut [f64]) {
     update(y, x, |y, x| *y = x + beta * *y);
 }
 
+/// A bit without pattern (the finaliser of splitmix64), for vectors that know nothing of a problem.
+pub(crate) fn mixed_bit(i: u64) -> bool {
+    let mut z = i.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (z ^ (z >> 31)) & 1 == 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

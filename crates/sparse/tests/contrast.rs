@@ -39,7 +39,8 @@ impl Scene {
         let map = &grid.reduced.map;
         let component: Vec<u32> =
             map.iter().map(|&i| (self.component)(point(NODES, i as usize)) as u32).collect();
-        Split::from_clusters(&grid.reduced.matrix, &component, infos.len(), &found).unwrap()
+        Split::from_clusters(&grid.reduced.matrix, &component, infos.len(), &found)
+            .expect("every cluster has nodes")
     }
 
     /// Errors of the plain and of the split solution.
@@ -49,8 +50,9 @@ impl Scene {
         let exact = solve_without_subtraction(matrix, rhs, NODES - 2);
         let plain = solve(&matrix.to_csr(), rhs, params).map(|(u, _)| distance(&u, &exact));
         let split = self.split(&grid);
-        let solution = split.apply(matrix, rhs).unwrap().solve(params).unwrap();
-        let u = split.recover(&solution.values, &solution.extra).unwrap();
+        let bordered = split.apply(matrix, rhs).expect("the split fits");
+        let solution = bordered.solve(params).expect("the split system is well determined");
+        let u = split.recover(&solution.values, &solution.extra).expect("lengths fit");
         (plain, distance(&u, &exact))
     }
 }

@@ -53,9 +53,6 @@ impl RowBuilder {
         }
         let start = block.indices.len();
         for &(column, value) in &self.entries {
-            if !value.is_finite() {
-                return Err(MatrixError::NotFinite { row, column: column as usize, value });
-            }
             if block.indices.len() > start && block.indices.last() == Some(&column) {
                 let end = block.values.len() - 1;
                 block.values[end] += value;
@@ -63,6 +60,10 @@ impl RowBuilder {
                 block.indices.push(column);
                 block.values.push(value);
             }
+        }
+        if let Some(k) = (start..block.values.len()).find(|&k| !block.values[k].is_finite()) {
+            let (column, value) = (block.indices[k] as usize, block.values[k]);
+            return Err(MatrixError::NotFinite { row, column, value });
         }
         if !self.row_sum.is_finite() {
             return Err(MatrixError::NotFinite { row, column: row, value: self.row_sum });

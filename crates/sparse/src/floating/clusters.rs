@@ -189,11 +189,16 @@ fn assign_scales(graph: &Graph<'_>, found: &mut [Cluster]) {
     }
     for c in 0..found.len() {
         let cluster = &found[c];
-        let outside = graph.outside(&cluster.members);
-        let (flux, factor) = outside.fold((0.0f64, 0.0f64), |(flux, factor), j| {
-            let s = scale[j as usize];
-            (flux.max(graph.components[j as usize].eta_max * s), factor.max(s))
-        });
+        let around =
+            |j: u32| cluster.parent.is_none_or(|p| found[p as usize].members.binary_search(&j).is_ok());
+        let (mut flux, mut factor) = (0.0f64, 0.0f64);
+        for j in graph.outside(&cluster.members) {
+            flux = flux.max(graph.components[j as usize].eta_max * scale[j as usize]);
+            // A nested cluster may touch what is outside of its parent, too, where its constant is not measured.
+            if around(j) {
+                factor = factor.max(scale[j as usize]);
+            }
+        }
         let own: Vec<u32> =
             cluster.members.iter().copied().filter(|&k| innermost[k as usize] == Some(c)).collect();
         let scales: Vec<f64> = own.iter().map(|&k| flux / graph.eta(k)).collect();

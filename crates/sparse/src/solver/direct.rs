@@ -3,7 +3,7 @@
 use super::scaling::Scaled;
 use super::{SolveError, SolveInfo};
 use crate::csr::Csr;
-use crate::vector::{norm, norm_max};
+use crate::vector::{mixed_bit, norm, norm_max};
 use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Llt, Lu, SymbolicLlt, SymbolicLu};
 use faer::sparse::linalg::{LltError, LuError};
@@ -139,14 +139,6 @@ impl Factors {
         };
         Ok((x, info))
     }
-}
-
-/// A bit without pattern (the finaliser of splitmix64), so that no null vector is missed but by accident.
-fn mixed_bit(i: u64) -> bool {
-    let mut z = i.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (z ^ (z >> 31)) & 1 == 1
 }
 
 /// Rows of the transpose, which are the columns of the matrix.

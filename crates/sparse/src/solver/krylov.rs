@@ -20,6 +20,9 @@ const CYCLES_WITHOUT_GAIN: usize = 3;
 /// A cycle aims at this part of the tolerance, so that the true residual meets it at the first attempt.
 const AIM: f64 = 0.5;
 
+/// What a cycle aims at, relative to its start, where only the componentwise error is left to improve.
+const AIM_FURTHER: f64 = 1e-3;
+
 /// Something that maps vectors to vectors, `y = A x`.
 pub trait LinearOperator: Sync {
     /// Number of rows and columns.
@@ -81,6 +84,8 @@ pub(crate) struct Cycle<'a> {
     pub(crate) history: &'a mut Vec<f64>,
     pub(crate) scratch: &'a mut [f64],
     pub(crate) products: usize,
+    /// How many cycles before this one gained nothing.
+    pub(crate) attempt: usize,
 }
 
 impl Cycle<'_> {
@@ -118,19 +123,20 @@ pub(crate) fn iterate(
     }
     let mut correction = vec![0.0; b.len()];
     let mut residual = b.to_vec();
-    let mut last_size = run.unit;
+    let (mut last_size, mut last_error) = (run.unit, f64::INFINITY);
     loop {
-        let target = AIM * params.tolerance * run.unit;
+        let met = params.tolerance * run.unit;
         let mut cycle = Cycle {
             a,
             m,
-            // Where the norm is met already, only the componentwise error is left to improve.
-            target: target.min(AIM * last_size),
+            // Where the norm is met already, the componentwise error is what is left to improve.
+            target: if last_size > met { AIM * met } else { AIM_FURTHER * last_size },
             unit: run.unit,
             budget: params.max_iterations.saturating_sub(run.products),
             history: &mut run.history,
             scratch: &mut run.scratch,
             products: 0,
+            attempt: run.without_gain,
         };
         correction.fill(0.0);
         let end = match method {
@@ -143,20 +149,19 @@ pub(crate) fn iterate(
         a.residual(&run.x, b, &mut residual);
         let size = norm(&residual);
         run.keep_best(size);
-        let backward_error = || a.backward_error(&run.x, b);
-        if size <= params.tolerance * run.unit && params.backward_error.is_none_or(|e| backward_error() <= e)
-        {
-            let backward_error = backward_error();
-            let info = run.info(size / run.unit, backward_error, m);
+        let error = if size <= met { a.backward_error(&run.x, b) } else { f64::INFINITY };
+        if size <= met && params.backward_error.is_none_or(|e| error <= e) {
+            let info = run.info(size / run.unit, error, m);
             return Ok((run.x, info));
         }
-        run.judge(end, size, last_size, params)?;
-        if !size.is_finite() || size > last_size {
+        let gain = (size / last_size).min(if error < last_error { error / last_error } else { 1.0 });
+        run.judge(end, gain, params)?;
+        if !size.is_finite() || (size > last_size && size > met) {
             // A cycle that made it worse is undone before the next one.
             run.x.clone_from(&run.best);
             a.residual(&run.x, b, &mut residual);
         }
-        last_size = norm(&residual);
+        (last_size, last_error) = (norm(&residual), error);
     }
 }
 
@@ -198,15 +203,9 @@ impl Run {
     }
 
     /// Whether to go on after a cycle that did not meet the tolerance.
-    fn judge(
-        &mut self,
-        end: CycleEnd,
-        size: f64,
-        last: f64,
-        params: &SolverParams,
-    ) -> Result<(), SolveError> {
+    fn judge(&mut self, end: CycleEnd, gain: f64, params: &SolverParams) -> Result<(), SolveError> {
         let least = if end == CycleEnd::Restart { LEAST_GAIN_RESTART } else { LEAST_GAIN };
-        self.without_gain = if size <= least * last { 0 } else { self.without_gain + 1 };
+        self.without_gain = if gain <= least { 0 } else { self.without_gain + 1 };
         let residual = self.best_size / self.unit;
         let hopeless = self.without_gain >= CYCLES_WITHOUT_GAIN;
         let spent = end == CycleEnd::Budget || self.products >= params.max_iterations;
