@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn solves_rows_and_columns_of_very_different_size() {
-        let a = vec![vec![1e-12, 2e-12, 0.0], vec![3.0, 1.0, 1.0], vec![0.0, 1e9, -1e9]];
+        let a = [vec![1e-12, 2e-12, 0.0], vec![3.0, 1.0, 1.0], vec![0.0, 1e9, -1e9]];
         let factor = [1.0, 1e20, 1e-20];
         let scaled = a.iter().map(|row| row.iter().zip(factor).map(|(a, f)| a * f).collect()).collect();
         let x = DenseLu::new(scaled).unwrap().solve(&[5e-12, 6.0, 1e9]);

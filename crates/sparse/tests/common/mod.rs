@@ -1,29 +1,7 @@
-//! Independent references: dense elimination, elimination without subtraction, five-point grids.
+//! Independent references: dense matrices, elimination without subtraction, five-point grids.
 #![allow(dead_code)] // each test program uses its own part
 
 use meshless_sparse::{Csr, DifferenceMatrix, Reduced};
-
-/// Solves a dense system by Gaussian elimination with partial pivoting.
-pub(crate) fn dense_solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
-    let n = b.len();
-    for k in 0..n {
-        let p = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs())).unwrap_or(k);
-        a.swap(k, p);
-        b.swap(k, p);
-        for i in k + 1..n {
-            let f = a[i][k] / a[k][k];
-            for j in k..n {
-                a[i][j] -= f * a[k][j];
-            }
-            b[i] -= f * b[k];
-        }
-    }
-    for k in (0..n).rev() {
-        let sum: f64 = (k + 1..n).map(|j| a[k][j] * b[j]).sum();
-        b[k] = (b[k] - sum) / a[k][k];
-    }
-    b
-}
 
 pub(crate) fn dense(matrix: &Csr) -> Vec<Vec<f64>> {
     (0..matrix.nrows()).map(|i| (0..matrix.ncols()).map(|j| matrix.get(i, j)).collect()).collect()
