@@ -75,8 +75,7 @@ fn solve_in<const D: usize>(
     seconds.assembly = start.elapsed().as_secs_f64() - discretization.stencil_seconds;
     progress.stage(Stage::Solve);
     let start = Instant::now();
-    let params =
-        SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
+    let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
     let system = solve(&problem, &discretization, &params).map_err(|e| discrete.explain(scene, e))?;
     seconds.solve = start.elapsed().as_secs_f64();
     Ok(Solved { discrete, discretization, system, seconds })
