@@ -46,6 +46,12 @@ pub enum MethodError {
         /// Its coordinates.
         position: Vec<f64>,
     },
+    /// Parts of the problem that do not fit together, or a diffusivity or source that is no number to compute with.
+    #[error("the problem is not sound: {what}")]
+    InvalidProblem {
+        /// What does not fit, and where.
+        what: String,
+    },
     /// A method was asked for something that it does not do.
     #[error("{method} cannot {what}; {instead}")]
     Unsupported {

@@ -6,7 +6,7 @@
 use meshless_geometry::{Cloud, Domain, FaceId, RegionMap};
 use meshless_neighbors::NeighborLists;
 
-use crate::Field;
+use crate::{Field, MethodError};
 
 /// The data of one region.
 #[derive(Debug, Clone)]
@@ -109,6 +109,52 @@ impl<const D: usize> std::fmt::Debug for Problem<'_, D> {
 }
 
 impl<const D: usize> Problem<'_, D> {
+    /// Checks that the parts fit together: a value a node, a condition a touch, diffusivities that are positive.
+    ///
+    /// # Errors
+    /// [`MethodError::InvalidProblem`] with the first thing that is wrong.
+    pub fn check(&self) -> Result<(), MethodError> {
+        let invalid = |what: String| Err(MethodError::InvalidProblem { what });
+        let nodes = self.cloud.len();
+        let lengths = [
+            ("neighbour lists", self.supports.lists.len()),
+            ("interaction radii", self.supports.radius.len()),
+            ("labels", self.labels.len()),
+            ("diffusivities", self.eta.len()),
+            ("sources", self.source.map_or(nodes, <[f64]>::len)),
+        ];
+        if let Some((what, found)) = lengths.into_iter().find(|(_, found)| *found != nodes) {
+            return invalid(format!("{found} {what} for {nodes} nodes"));
+        }
+        if let Some(i) = self.eta.iter().position(|&eta| !(eta > 0.0 && eta.is_finite())) {
+            let (eta, x) = (self.eta[i], self.cloud.points()[i]);
+            return invalid(format!(
+                "the diffusivity {eta} at node {i} (at {x:?}) is not positive and finite"
+            ));
+        }
+        if let Some(i) = self.source.and_then(|f| f.iter().position(|f| !f.is_finite())) {
+            return invalid(format!(
+                "the source at node {i} (at {:?}) is not finite",
+                self.cloud.points()[i]
+            ));
+        }
+        let boundary = self.cloud.boundary();
+        if self.conditions.len() != boundary.len() {
+            return invalid(format!(
+                "conditions at {} of {} boundary nodes",
+                self.conditions.len(),
+                boundary.len()
+            ));
+        }
+        match boundary.iter().zip(self.conditions).find(|(node, given)| node.touches.len() != given.len()) {
+            Some((node, given)) => {
+                let (node, found, touches) = (node.node, given.len(), node.touches.len());
+                invalid(format!("node {node} has {found} conditions on {touches} faces"))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The largest diffusivity of a node over the smallest.
     pub fn contrast(&self) -> f64 {
         let (low, high) = self.eta.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));

@@ -31,6 +31,7 @@ pub struct Gfdm {
 
 impl<const D: usize> Method<D> for Gfdm {
     fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
+        problem.check()?;
         self.check(problem)?;
         Parts::build(problem, &self.params)?.assemble(problem)
     }

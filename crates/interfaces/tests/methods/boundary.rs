@@ -69,3 +69,21 @@ fn robin_conditions_on_curved_boundaries_converge() {
         assert!(fine < 1e-9 || (fine < 0.6 * coarse && fine < 3e-2), "{name} in 3-D: {coarse:e}, {fine:e}");
     }
 }
+
+#[test]
+fn problems_whose_parts_do_not_fit_are_refused() {
+    let sound = annulus(0.2);
+    let refusal = |setup: &Setup<2>| setup.try_solve(GfdmParams::hybrid()).unwrap_err().to_string();
+    let mut setup = sound.clone();
+    setup.eta[7] = 0.0;
+    assert!(refusal(&setup).contains("diffusivity 0 at node 7"), "{}", refusal(&setup));
+    setup.eta[7] = f64::NAN;
+    assert!(refusal(&setup).contains("diffusivity NaN at node 7"), "{}", refusal(&setup));
+    setup.eta.pop();
+    assert!(refusal(&setup).contains("diffusivities for"), "{}", refusal(&setup));
+    let setup = sound.clone().source(|_, x| (x[0] - 10.0).sqrt());
+    assert!(refusal(&setup).contains("the source at node 0"), "{}", refusal(&setup));
+    let mut setup = sound;
+    setup.labels.clear();
+    assert!(refusal(&setup).contains("0 labels for"), "{}", refusal(&setup));
+}
