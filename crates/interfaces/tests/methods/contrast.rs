@@ -13,7 +13,7 @@ proptest! {
     /// Interfaces at the middles between nodes: the nodal values are those of resistances in series.
     #[test]
     fn layers_in_one_dimension_are_resistances_in_series(
-        n in 8..60_usize, layers in proptest::collection::vec((1..6_usize, -6.0..6.0), 2..9),
+        n in 8..60_usize, layers in proptest::collection::vec((1..6_usize, -12.0..12.0), 2..9),
         ends in (-2.0..2.0, -2.0..2.0),
     ) {
         // Layers are repeated until the interval is full; every one is a region.
