@@ -1,6 +1,6 @@
 //! Properties of the discretisations and of the layer below them, on problems made by hand.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used)] // these are tests: what fails to unwrap fails the test
 
 mod boundary;
 mod conservation;

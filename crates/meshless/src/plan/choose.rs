@@ -16,7 +16,7 @@ const SUPPORT: [f64; 3] = [3.1, 2.9, 2.2];
 const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 150_000.0, 1_500.0];
 
 /// Relative true residual at which the Krylov solver stops.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-11;
 
 /// Contrast above which a region may be stiff enough for its constant to be split off.
 pub(super) const FLOATING_CONTRAST: f64 = 10.0;
