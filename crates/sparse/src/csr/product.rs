@@ -22,12 +22,24 @@ pub(crate) fn for_each_row(y: &mut [f64], f: impl Fn(usize, &mut f64) + Sync) {
     });
 }
 
+/// Independent partial sums of a row: one sum would wait for each addition before the next.
+const LANES: usize = 4;
+
 impl Csr {
-    /// `sum_j a_ij x_j`, added from left to right.
+    /// `sum_j a_ij x_j`, in an order that depends on the number of entries only.
     #[inline]
-    pub(crate) fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
+    fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
         let (columns, values) = self.row(i);
-        columns.iter().zip(values).fold(0.0, |sum, (&j, a)| sum + a * x[j as usize])
+        let (column_lanes, column_rest) = columns.as_chunks::<LANES>();
+        let (value_lanes, value_rest) = values.as_chunks::<LANES>();
+        let mut lanes = [0.0; LANES];
+        for (columns, values) in column_lanes.iter().zip(value_lanes) {
+            for k in 0..LANES {
+                lanes[k] += values[k] * x[columns[k] as usize];
+            }
+        }
+        let rest = column_rest.iter().zip(value_rest).fold(0.0, |sum, (&j, a)| sum + a * x[j as usize]);
+        lanes.iter().sum::<f64>() + rest
     }
 
     /// `y = A x`.
