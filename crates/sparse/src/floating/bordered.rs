@@ -137,12 +137,15 @@ impl Bordered {
         products += info.iterations;
         if self.extra() > 0 {
             let residual = self.residual(&values, &extra);
-            let (d_values, d_extra, d_info) = elimination.solve(&residual)?;
-            products += d_info.iterations;
-            let better_values: Vec<f64> = values.iter().zip(&d_values).map(|(a, b)| a + b).collect();
-            let better_extra: Vec<f64> = extra.iter().zip(&d_extra).map(|(a, b)| a + b).collect();
-            if self.backward_error(&better_values, &better_extra) <= self.backward_error(&values, &extra) {
-                (values, extra) = (better_values, better_extra);
+            // What is left may be rounding that an iterative method cannot reduce: then the solution stays as it is.
+            if let Ok((d_values, d_extra, d_info)) = elimination.solve(&residual) {
+                products += d_info.iterations;
+                let better_values: Vec<f64> = values.iter().zip(&d_values).map(|(a, b)| a + b).collect();
+                let better_extra: Vec<f64> = extra.iter().zip(&d_extra).map(|(a, b)| a + b).collect();
+                if self.backward_error(&better_values, &better_extra) <= self.backward_error(&values, &extra)
+                {
+                    (values, extra) = (better_values, better_extra);
+                }
             }
             info.residual = norm(&self.residual(&values, &extra)) / norm(&self.rhs).max(f64::MIN_POSITIVE);
             info.backward_error = self.backward_error(&values, &extra);
