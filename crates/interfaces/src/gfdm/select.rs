@@ -1,9 +1,10 @@
 //! Which rows are conservative (Kraus et al. 2022, section 2.2.3 and appendix A).
 
+use meshless_stencils::SignDiagnosis;
 use rayon::prelude::*;
 
 use crate::Problem;
-use crate::gfdm::strong::{StrongRows, dominance_error};
+use crate::gfdm::strong::StrongRows;
 use crate::gfdm::{GfdmParams, Selection};
 use crate::method::RowKind;
 
@@ -39,7 +40,8 @@ pub(super) fn conservative_nodes<const D: usize>(
     let flagged: Vec<bool> = (0..kinds.len())
         .into_par_iter()
         .map(|i| {
-            let dominated = || dominance_error(rows.row(problem, i).1) > params.selection_tolerance;
+            let dominated =
+                || SignDiagnosis::of_row(rows.row(problem, i).1).dominance_error > params.selection_tolerance;
             kinds[i] == RowKind::Strong && (dominated() || by_region(i))
         })
         .collect();

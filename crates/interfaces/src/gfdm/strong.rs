@@ -70,14 +70,6 @@ impl StrongRows {
     }
 }
 
-/// The diagonal-dominance error (23) of a row given by its off-diagonal coefficients.
-///
-/// The diagonal is `-sum gamma_ij`; a row whose diagonal is not negative is as wrong as can be.
-pub(super) fn dominance_error(row: &[f64]) -> f64 {
-    let (sum, absolute) = row.iter().fold((0.0, 0.0), |(s, a), c| (s + c, a + c.abs()));
-    if sum <= 0.0 { f64::INFINITY } else { (absolute / sum - 1.0).max(0.0) }
-}
-
 struct StrongOperator<'a, const D: usize> {
     problem: &'a Problem<'a, D>,
     fit: NodeFit<D>,
@@ -169,13 +161,6 @@ pub(super) fn add_correction(row: &mut [f64], xi: &[f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_row_of_one_sign_is_dominant() {
-        assert_eq!(dominance_error(&[1.0, 2.0, 3.0]), 0.0);
-        assert!((dominance_error(&[1.0, 2.0, -0.5]) - 0.4).abs() < 1e-15);
-        assert_eq!(dominance_error(&[1.0, -2.0]), f64::INFINITY);
-    }
 
     #[test]
     fn the_correction_minimises_the_row_relative_to_its_diagonal() {
