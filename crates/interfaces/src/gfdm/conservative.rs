@@ -11,8 +11,9 @@ use crate::gfdm::boundary::as_flux;
 use crate::problem::Condition;
 use crate::{MethodError, Problem};
 
-/// How often the search for the neighbours that close a cell is widened.
-const MAX_SEARCHES: usize = 8;
+/// By how much the search for the neighbours that close a cell is widened, at least: a cell that is open reports little
+/// more than what has been searched.
+const SEARCH_GROWTH: f64 = 1.3;
 
 /// Smallest face that counts, relative to the largest of its cell: below it a face is round-off of a degenerate
 /// Voronoi vertex, and its flux would be noise.
@@ -87,18 +88,18 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         let bounds = self.problem.domain.bounds();
         let BalanceScratch { cell, cuts, found, candidates } = scratch;
         let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts };
-        let mut searched = self.problem.supports.radius[i];
+        let everything = (0..D).map(|k| (bounds.max[k] - bounds.min[k]).powi(2)).sum::<f64>().sqrt();
+        let reach_of = |radius: f64| if radius < everything { radius } else { f64::INFINITY };
+        let mut searched = reach_of(self.problem.supports.radius[i]);
         // Radii that differ leave holes in the lists: a node whose own radius is small is listed at its neighbours only.
         match self.uniform_radius {
             Some(_) => self.list(self.problem.supports.lists.of(i), candidates),
             None => self.search(i, searched, found, candidates),
         }
-        let mut searches = 1;
         loop {
             match voronoi_cell(x, candidates, searched, &container, cell) {
-                Err(CellError::Incomplete { needed, .. }) if searches < MAX_SEARCHES => {
-                    searches += 1;
-                    searched = needed.clamp(searched, 2.0 * searched);
+                Err(CellError::Incomplete { needed, .. }) if searched.is_finite() => {
+                    searched = reach_of(needed.clamp(SEARCH_GROWTH * searched, 2.0 * searched));
                     self.search(i, searched, found, candidates);
                 }
                 other => return other.map_err(|e| MethodError::cell(i, x, e)),
