@@ -2,8 +2,7 @@
 
 use meshless::plan::Plan;
 use meshless_geometry::{CloudParams, Domain, Layout, RegionMap, Spacing, generate};
-use meshless_interfaces::gfdm::Gfdm;
-use meshless_interfaces::{Condition, Field, Material, Method, Problem, Supports, SystemParams, solve};
+use meshless_interfaces::{Condition, Field, Material, Problem, Supports, SystemParams, solve};
 use meshless_neighbors::{Distance, Radius, within_radius};
 
 use super::effects::SPACING;
@@ -42,7 +41,7 @@ pub(super) fn laplace(plan: &Plan) -> Result<Vec<f64>, Box<dyn std::error::Error
         boundary: &boundary,
         jumps: &[],
     };
-    let discretization = Gfdm { params: plan.method.gfdm }.discretize(&problem)?;
+    let discretization = plan.method.params.build().discretize(&problem)?;
     let params = SystemParams { solver: plan.solver, split_floating: false };
     Ok(solve(&problem, &discretization, &params)?.u)
 }

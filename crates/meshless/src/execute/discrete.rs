@@ -3,10 +3,7 @@
 use std::time::Instant;
 
 use meshless_geometry::{Cloud, CloudParams, Domain, RegionMap, generate};
-use meshless_interfaces::gfdm::Gfdm;
-use meshless_interfaces::{
-    BoundaryData, Condition, InterfaceJump, Material, Method, MethodError, Problem, Supports,
-};
+use meshless_interfaces::{BoundaryData, Condition, InterfaceJump, Material, MethodError, Problem, Supports};
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
 
 use super::Progress;
@@ -115,11 +112,6 @@ impl<const D: usize> Discrete<D> {
             boundary: &self.boundary as &dyn BoundaryData<D>,
             jumps: &self.jumps,
         }
-    }
-
-    /// The spatial method of a plan. This is the one place that knows which methods there are.
-    pub(super) fn method(&self, plan: &Plan) -> Box<dyn Method<D>> {
-        Box::new(Gfdm { params: plan.method.gfdm })
     }
 
     /// Measure that belongs to each node: `spacing^D`, half of it on a face, a quarter on an edge, an eighth at a corner.

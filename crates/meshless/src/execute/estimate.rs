@@ -65,6 +65,7 @@ pub(super) fn against_coarser<const D: usize>(
         .effects
         .iter()
         .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
-    let order = if smooth { plan.method.gfdm.strong.degree as i32 } else { 1 };
-    Ok(Estimate { l2: Some(norms.l2() / (RATIO.powi(order) - 1.0)), why_not: None })
+    let method = &plan.method.params;
+    let order = if smooth { method.order() } else { method.interface_order() };
+    Ok(Estimate { l2: Some(norms.l2() / (RATIO.powi(order as i32) - 1.0)), why_not: None })
 }

@@ -70,7 +70,7 @@ fn solve_in<const D: usize>(
     progress.stage(if plan.runs(Stage::Cells) { Stage::Cells } else { Stage::LaplacianStencils });
     let start = Instant::now();
     let discretization =
-        discrete.method(plan).discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
+        plan.method.params.build().discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
     seconds.stencils += discretization.stencil_seconds;
     seconds.assembly = start.elapsed().as_secs_f64() - discretization.stencil_seconds;
     progress.stage(Stage::Solve);
@@ -98,7 +98,7 @@ fn execute_in<const D: usize>(
     let u = &solved.system.u;
     let gradient = if plan.runs(Stage::Gradient) {
         progress.stage(Stage::Gradient);
-        Some(solved.discrete.method(plan).gradient(&problem, u)?)
+        Some(plan.method.params.build().gradient(&problem, u)?)
     } else {
         None
     };

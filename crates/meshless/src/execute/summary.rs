@@ -31,7 +31,7 @@ pub(super) fn report<const D: usize>(
         unknowns: solved.discrete.cloud.len() - count(RowKind::Dirichlet),
         spacing: solved.discrete.cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b)),
         method: plan.method.name.as_str().to_owned(),
-        order: plan.method.gfdm.strong.degree,
+        order: plan.method.params.order(),
         contrast: problem.contrast(),
         effects: plan.effects.iter().map(|e| e.name().to_owned()).collect(),
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),

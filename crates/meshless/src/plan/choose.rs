@@ -1,10 +1,9 @@
 //! Decisions: method, solver, stages.
 
-use meshless_interfaces::gfdm::{GfdmParams, Selection};
 use meshless_sparse::{PreconditionerKind, SolverKind, SolverParams};
 
 use super::effects::{Effect, Survey};
-use super::{MethodPlan, Skipped, Stage};
+use super::{MethodParams, MethodPlan, Skipped, Stage};
 use crate::Error;
 use crate::scene::{MethodName, Scene, SolverName};
 
@@ -30,27 +29,9 @@ pub(super) fn method(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error
         MethodName::Auto => (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned()),
         name => (name, "asked for by the scene".to_owned()),
     };
-    let mut gfdm = match name {
-        MethodName::GfdmClassical => GfdmParams::classical(),
-        MethodName::GfdmConservative => GfdmParams::conservative(),
-        MethodName::GfdmPositive => GfdmParams::positive(),
-        _ => GfdmParams::hybrid(),
-    };
-    if !survey.has_interface() {
-        gfdm.strong.smoothing = 0;
-    }
-    let options = &scene.method.options;
-    gfdm.strong.smoothing = options.smoothing.unwrap_or(gfdm.strong.smoothing);
-    gfdm.strong.log_scaling = options.log_scaling.unwrap_or(gfdm.strong.log_scaling);
-    gfdm.strong.correction = options.correction.unwrap_or(gfdm.strong.correction);
-    gfdm.strong.degree = scene.method.order.unwrap_or(gfdm.strong.degree);
-    gfdm.conservative_neumann = options.conservative_neumann.unwrap_or(gfdm.conservative_neumann);
-    gfdm.selection_tolerance = options.selection_tolerance.unwrap_or(gfdm.selection_tolerance);
-    // A scene that names the method gets the paper's selection; where the choice is ours, regions tell where
-    // interfaces are, also where a jump is too small to spoil the diagonal dominance.
-    gfdm.select_by_region = scene.method.name == MethodName::Auto && survey.has_interface();
-    let support = options.support.unwrap_or(SUPPORT[scene.dimension - 1]);
-    Ok(MethodPlan { name, why, support, gfdm })
+    let params = MethodParams::new(name, scene, survey);
+    let support = scene.method.options.support.unwrap_or(SUPPORT[scene.dimension - 1]);
+    Ok(MethodPlan { name, why, support, params })
 }
 
 pub(super) fn solver(scene: &Scene, unknowns: f64) -> SolverParams {
@@ -81,29 +62,25 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
         }
     };
     let exact = scene.regions.iter().all(|r| r.exact.is_some());
-    let gfdm = &method.gfdm;
-    let conservative_boundary = gfdm.conservative_neumann
-        && survey.has(|e| matches!(e, Effect::Neumann | Effect::Flux | Effect::Robin));
-    let stencils = gfdm.selection != Selection::All;
+    let steps = method.params.steps(survey);
     let variable = !survey.uniform;
-    let selects = matches!(gfdm.selection, Selection::Flagged | Selection::FlaggedAndNeighbors);
     decide(true, Stage::Points, "");
     decide(true, Stage::Neighbors, "");
     decide(scene.regions.len() > 1, Stage::Regions, "there is one region");
     decide(variable, Stage::Diffusivity, "the diffusivity is one constant");
     decide(survey.has(|e| matches!(e, Effect::Source)), Stage::Source, "the scene has no source");
     decide(
-        stencils && !variable,
+        steps.stencils && !variable,
         Stage::LaplacianStencils,
-        if stencils { "the diffusivity varies" } else { "every row is conservative" },
+        if steps.stencils { "the diffusivity varies" } else { steps.no_stencils },
     );
     decide(
-        stencils && variable,
+        steps.stencils && variable,
         Stage::DiffusionStencils,
-        if stencils { "the diffusivity is one constant" } else { "every row is conservative" },
+        if steps.stencils { "the diffusivity is one constant" } else { steps.no_stencils },
     );
-    decide(selects && stencils, Stage::NodeSelection, "the method does not mix rows");
-    decide(selects || !stencils || conservative_boundary, Stage::Cells, "no row is conservative");
+    decide(steps.selection, Stage::NodeSelection, "the method does not mix rows");
+    decide(steps.may_need_cells, Stage::Cells, "no row is conservative");
     decide(true, Stage::Assembly, "");
     let may_float = survey.contrast > FLOATING_CONTRAST;
     decide(may_float, Stage::FloatingConstants, "no region is much stiffer than its neighbours");

@@ -5,16 +5,17 @@
 
 mod choose;
 mod effects;
+mod method;
 mod predict;
 mod show;
 
-use meshless_interfaces::gfdm::GfdmParams;
 use meshless_sparse::SolverParams;
 
 use crate::Error;
 use crate::scene::{MethodName, Scene};
 
 pub use effects::Effect;
+pub use method::MethodParams;
 pub use predict::Predicted;
 
 /// What will be done, in order.
@@ -45,8 +46,8 @@ pub struct MethodPlan {
     pub why: String,
     /// Interaction radius in units of the spacing.
     pub support: f64,
-    /// Parameters of the generalised finite difference methods.
-    pub gfdm: GfdmParams,
+    /// Its parameters.
+    pub params: MethodParams,
 }
 
 /// A step of the execution.

@@ -1,7 +1,5 @@
 //! What a plan is expected to take.
 
-use meshless_interfaces::gfdm::Selection;
-
 use super::MethodPlan;
 use super::effects::Survey;
 use crate::Error;
@@ -46,13 +44,9 @@ const BASE_MEMORY_MB: f64 = 10.0;
 pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Result<Predicted, Error> {
     let unknowns = build::estimated_nodes(scene)?;
     let rates = &RATES[scene.dimension - 1];
-    let stencils = if method.gfdm.selection == Selection::All { 0.0 } else { rates.stencil };
-    let cells = match method.gfdm.selection {
-        Selection::All => rates.cell,
-        Selection::None => 0.0,
-        _ if survey.has_interface() => 0.2 * rates.cell,
-        _ => 0.0,
-    };
+    let steps = method.params.steps(survey);
+    let stencils = if steps.stencils { rates.stencil } else { 0.0 };
+    let cells = steps.cells * rates.cell;
     let solve = rates.solve * (unknowns / 1e4).max(1.0).powf(SOLVE_GROWTH);
     let microseconds = rates.points + rates.neighbors + stencils + cells + solve;
     // The estimate solves again with half as many nodes in every direction.

@@ -1,0 +1,65 @@
+//! The spatial methods as plans see them: one file for each family, one variant of [`MethodParams`] for each.
+
+mod gfdm;
+
+use meshless_interfaces::Method;
+use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
+
+use super::effects::Survey;
+use crate::scene::{MethodName, Scene};
+
+/// Parameters of the spatial method.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MethodParams {
+    /// Generalised finite differences: classical, positive, hybrid and conservative.
+    Gfdm(GfdmParams),
+}
+
+/// What a method builds; decides its stages and what they are expected to cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Steps {
+    /// Least-squares stencils.
+    pub(super) stencils: bool,
+    /// Why there are none, if there are none.
+    pub(super) no_stencils: &'static str,
+    /// A search for the nodes that need another row than the rest.
+    pub(super) selection: bool,
+    /// Share of the nodes that need a Voronoi cell, about.
+    pub(super) cells: f64,
+    /// Cells are needed at least on the boundary, or may turn out to be.
+    pub(super) may_need_cells: bool,
+}
+
+impl MethodParams {
+    /// The parameters of the method `name` in a scene. The only place, with [`Self::build`], that knows all families.
+    pub(super) fn new(name: MethodName, scene: &Scene, survey: &Survey) -> Self {
+        Self::Gfdm(gfdm::params(name, scene, survey))
+    }
+
+    /// The spatial method itself.
+    pub fn build<const D: usize>(&self) -> Box<dyn Method<D>> {
+        match self {
+            Self::Gfdm(params) => Box::new(Gfdm { params: *params }),
+        }
+    }
+
+    /// Degree of the polynomials that are reproduced away from interfaces.
+    pub fn order(&self) -> usize {
+        match self {
+            Self::Gfdm(params) => gfdm::order(params),
+        }
+    }
+
+    /// Order at which the error in u falls where something jumps at an interface.
+    pub fn interface_order(&self) -> usize {
+        match self {
+            Self::Gfdm(_) => 1,
+        }
+    }
+
+    pub(super) fn steps(&self, survey: &Survey) -> Steps {
+        match self {
+            Self::Gfdm(params) => gfdm::steps(params, survey),
+        }
+    }
+}
