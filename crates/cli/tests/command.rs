@@ -106,7 +106,11 @@ fn json_is_one_object_with_the_promised_keys() {
     assert!(json["errors"]["regions"]["left"]["l2"].as_f64().unwrap() < 0.05);
     assert!((json["probes"][0]["value"].as_f64().unwrap() - 0.5).abs() < 0.03);
     assert!(json["skipped"].as_array().unwrap().contains(&"time".into()));
-    assert!(out.join("scene.vtu").is_file() && out.join("scene.svg").is_file());
+    assert!(out.join("scene.svg").is_file());
+    let vtu = String::from_utf8_lossy(&std::fs::read(out.join("scene.vtu")).unwrap()).into_owned();
+    for name in ["u", "gradient", "eta", "region", "row_kind", "stencil_condition", "dominance_error"] {
+        assert!(vtu.contains(&format!("Name=\"{name}\"")), "{name}");
+    }
 }
 
 #[test]

@@ -44,7 +44,7 @@
 //! ```
 
 mod adjacency;
-mod diagnose;
+mod diagnosis;
 mod error;
 mod field;
 pub mod gfdm;
@@ -52,15 +52,17 @@ mod gradient;
 mod local;
 mod method;
 mod problem;
+mod row_report;
 mod sample;
 mod support_values;
 mod system;
 
 pub use adjacency::adjacent_pairs;
-pub use diagnose::RowReport;
+pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
 pub use error::MethodError;
 pub use field::{Field, ScalarField};
 pub use method::{Counts, Discretization, Method, RowKind};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
+pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};
 pub use system::{SystemParams, SystemSolution, solve};

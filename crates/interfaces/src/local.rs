@@ -72,6 +72,21 @@ impl<const D: usize> NodeFit<D> {
         Ok(())
     }
 
+    /// Condition of the fit at node i, and how exactly it reproduces the Laplacian of polynomials.
+    pub(crate) fn quality(
+        &self,
+        problem: &Problem<'_, D>,
+        i: usize,
+        scratch: &mut NodeScratch<D>,
+    ) -> Result<(f64, f64), StencilError> {
+        self.factor(problem, i, problem.supports.lists.of(i), scratch)?;
+        let NodeScratch { fit, offsets, coefficients, .. } = scratch;
+        let coefficients = &mut coefficients[..offsets.len()];
+        self.fit.coefficients(&Functional::Laplacian, fit, coefficients)?;
+        let diagnosis = self.fit.diagnose(&Functional::Laplacian, offsets, 0, coefficients, fit)?;
+        Ok((diagnosis.condition, diagnosis.residual))
+    }
+
     /// The correction vector of Kraus et al. (2022), (18), on the neighbours; it is 1 at the node itself.
     pub(crate) fn correction(
         &self,

@@ -1,6 +1,6 @@
 //! The field at the nodes, in three coordinates whatever the dimension.
 
-use meshless_interfaces::RowKind;
+use meshless_interfaces::{NodeDiagnosis, RowKind};
 
 use crate::execute::Discrete;
 
@@ -23,6 +23,8 @@ pub struct NodalField {
     pub region: Vec<u16>,
     /// How the row of the node was made.
     pub kind: Vec<RowKind>,
+    /// What the stencil and the row of the node look like, where the plan asks for it.
+    pub diagnosis: Option<Vec<NodeDiagnosis>>,
 }
 
 impl NodalField {
@@ -32,6 +34,7 @@ impl NodalField {
         gradient: Option<Vec<[f64; D]>>,
         exact: Option<Vec<f64>>,
         kinds: &[RowKind],
+        diagnosis: Option<Vec<NodeDiagnosis>>,
     ) -> Self {
         Self {
             dimension: D,
@@ -42,6 +45,7 @@ impl NodalField {
             eta: discrete.eta.clone(),
             region: discrete.labels.clone(),
             kind: kinds.to_vec(),
+            diagnosis,
         }
     }
 }

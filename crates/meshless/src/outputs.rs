@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshless_interfaces::RowKind;
+use meshless_interfaces::{NodeDiagnosis, RowKind};
 use meshless_output::{VtuField, write_text_atomically, write_vtu};
 
 use crate::Error;
@@ -42,6 +42,15 @@ fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
     ];
     if let Some(gradient) = &field.gradient {
         fields.push(VtuField::vectors("gradient", gradient));
+    }
+    if let Some(diagnosis) = &field.diagnosis {
+        let mut add = |name, of: fn(&NodeDiagnosis) -> f64| {
+            fields.push(VtuField::scalars(name, diagnosis.iter().map(of).collect()));
+        };
+        add("stencil_condition", |d| d.condition);
+        add("stencil_residual", |d| d.residual);
+        add("wrong_sign", |d| d.wrong_sign);
+        add("dominance_error", |d| d.dominance_error);
     }
     if let Some(exact) = &field.exact {
         fields.push(VtuField::scalars("error", field.u.iter().zip(exact).map(|(u, e)| u - e).collect()));

@@ -6,6 +6,7 @@ mod boundary;
 mod conservation;
 mod consistency;
 mod contrast;
+mod diagnosis;
 mod fields;
 mod invariance;
 mod jumps;

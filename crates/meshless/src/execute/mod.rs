@@ -8,7 +8,7 @@ mod summary;
 
 use std::time::Instant;
 
-use meshless_interfaces::{Discretization, SystemParams, SystemSolution, solve};
+use meshless_interfaces::{Discretization, SystemParams, SystemSolution, diagnose_nodes, solve};
 
 use crate::plan::{Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
@@ -106,6 +106,9 @@ fn execute_in<const D: usize>(
         (Some(exact), Some(gradient)) => Some(measure::errors(scene, &solved, exact, gradient)),
         _ => None,
     };
+    let diagnosis = plan
+        .runs(Stage::Diagnosis)
+        .then(|| diagnose_nodes(&problem, &solved.discretization, plan.method.params.order()));
     let probes = measure::probes(scene, &solved)?;
     seconds.post = post.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
@@ -120,8 +123,8 @@ fn execute_in<const D: usize>(
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, &solved)).transpose()?;
     seconds.post += before.elapsed().as_secs_f64();
     seconds.total = start.elapsed().as_secs_f64();
-    let field =
-        NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), &solved.discretization.kinds);
+    let kinds = &solved.discretization.kinds;
+    let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
     Ok(Solution { report, field, picture })
 }

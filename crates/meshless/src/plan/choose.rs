@@ -89,6 +89,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(exact, Stage::Errors, "the scene has no exact solution");
     decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
     decide(true, Stage::Estimate, "");
+    decide(scene.output.vtu, Stage::Diagnosis, "no field output asks for it");
     decide(scene.output.vtu, Stage::Vtu, "not asked for");
     decide(scene.output.plot, Stage::Plot, "not asked for");
     let mut absent = |present: bool, what: &'static str, why: &'static str| {

@@ -85,6 +85,8 @@ pub enum Stage {
     Probes,
     /// Solve on a coarser cloud to estimate the error.
     Estimate,
+    /// Condition, residual and signs of every node's stencil and row.
+    Diagnosis,
     /// Write the fields for ParaView.
     Vtu,
     /// Draw the solution.
@@ -130,7 +132,13 @@ impl Plan {
         plan.stages.retain(|s| {
             !matches!(
                 s,
-                Stage::Gradient | Stage::Errors | Stage::Probes | Stage::Estimate | Stage::Vtu | Stage::Plot
+                Stage::Gradient
+                    | Stage::Errors
+                    | Stage::Probes
+                    | Stage::Estimate
+                    | Stage::Diagnosis
+                    | Stage::Vtu
+                    | Stage::Plot
             )
         });
         plan

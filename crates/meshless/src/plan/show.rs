@@ -26,6 +26,7 @@ impl Stage {
             Self::Errors => "errors",
             Self::Probes => "probes",
             Self::Estimate => "error estimate",
+            Self::Diagnosis => "stencil diagnosis",
             Self::Vtu => "vtu output",
             Self::Plot => "plot",
         }
