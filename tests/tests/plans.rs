@@ -49,7 +49,7 @@ fn every_effect_adds_its_own_stages_and_no_others() {
     assert_eq!(added(Small { extra: "[output]\nplot = true\n\n", ..Small::default() }), [Stage::Plot]);
     assert_eq!(
         added(Small { extra: "[output]\nvtu = true\n\n", ..Small::default() }),
-        [Stage::Gradient, Stage::Vtu]
+        [Stage::Gradient, Stage::Diagnosis, Stage::Vtu]
     );
     assert_eq!(
         added(Small { inside: Some("5"), ..Small::default() }),

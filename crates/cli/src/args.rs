@@ -1,8 +1,12 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
+use meshless::Overrides;
+use meshless::scene::Scene;
+
+use crate::Failure;
 
 /// Solves elliptic interface problems on point clouds.
 #[derive(Debug, Parser)]
@@ -32,6 +36,19 @@ pub(crate) struct SolveArgs {
     /// Print one JSON object on standard output, and nothing else there.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) instead: InsteadArgs,
+    /// Relative L2 error to reach (not supported yet).
+    #[arg(long)]
+    pub(crate) tolerance: Option<f64>,
+    /// Threads to use; all cores by default. Results do not depend on it.
+    #[arg(long)]
+    pub(crate) threads: Option<usize>,
+}
+
+/// What takes the place of the scene's own values.
+#[derive(Debug, clap::Args)]
+pub(crate) struct InsteadArgs {
     /// Method to use instead of the scene's.
     #[arg(long)]
     pub(crate) method: Option<String>,
@@ -39,14 +56,19 @@ pub(crate) struct SolveArgs {
     #[arg(long)]
     pub(crate) order: Option<usize>,
     /// Spacing to use instead of the scene's: a number, or an expression of position.
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) spacing: Option<String>,
-    /// Relative L2 error to reach (not supported yet).
-    #[arg(long)]
-    pub(crate) tolerance: Option<f64>,
-    /// Threads to use; all cores by default. Results do not depend on it.
-    #[arg(long)]
-    pub(crate) threads: Option<usize>,
+}
+
+impl InsteadArgs {
+    /// The scene of a file with these values in it.
+    pub(crate) fn read(&self, file: &Path) -> Result<Scene, Failure> {
+        let mut scene = Scene::read(file).map_err(meshless::Error::from)?;
+        let overrides =
+            Overrides { method: self.method.as_deref(), order: self.order, spacing: self.spacing.as_deref() };
+        overrides.apply(&mut scene).map_err(|e| Failure::input(format!("error: {e}")))?;
+        Ok(scene)
+    }
 }
 
 #[derive(Debug, clap::Args)]
@@ -56,4 +78,6 @@ pub(crate) struct PlanArgs {
     /// Print one JSON object on standard output, and nothing else there.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) instead: InsteadArgs,
 }

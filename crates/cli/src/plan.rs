@@ -1,7 +1,6 @@
 //! `meshless plan`.
 
 use meshless::plan::{Effect, Plan};
-use meshless::scene::Scene;
 use serde::Serialize;
 
 use crate::Failure;
@@ -35,7 +34,7 @@ struct PredictedJson {
 }
 
 pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let scene = Scene::read(&args.scene).map_err(meshless::Error::from)?;
+    let scene = args.instead.read(&args.scene)?;
     let plan = Plan::new(&scene)?;
     if !args.json {
         say!("{}\n{plan}", scene.title);

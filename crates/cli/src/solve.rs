@@ -4,8 +4,7 @@ use std::path::Path;
 
 use meshless::plan::Plan;
 use meshless::report::Report;
-use meshless::scene::Scene;
-use meshless::{Overrides, Solution, execute, write_outputs};
+use meshless::{Solution, execute, write_outputs};
 
 use crate::Failure;
 use crate::args::SolveArgs;
@@ -17,7 +16,7 @@ pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
             "error: --tolerance is not supported yet; choose --spacing and look at the estimate",
         ));
     }
-    let scene = read(args)?;
+    let scene = args.instead.read(&args.scene)?;
     let plan = Plan::new(&scene)?;
     let writes = scene.output.vtu || scene.output.plot;
     if writes {
@@ -34,14 +33,6 @@ pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
         files.iter().for_each(|file| say!("wrote       {}", file.display()));
     }
     Ok(())
-}
-
-fn read(args: &SolveArgs) -> Result<Scene, Failure> {
-    let mut scene = Scene::read(&args.scene).map_err(meshless::Error::from)?;
-    let overrides =
-        Overrides { method: args.method.as_deref(), order: args.order, spacing: args.spacing.as_deref() };
-    overrides.apply(&mut scene).map_err(|e| Failure::input(format!("error: {e}")))?;
-    Ok(scene)
 }
 
 /// Makes the output folder and finds out whether it can be written, before anything is computed.

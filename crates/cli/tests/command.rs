@@ -241,3 +241,16 @@ fn a_wrong_command_line_ends_with_status_2() {
         assert_eq!(meshless(args).status.code(), Some(2), "{args:?}");
     }
 }
+
+#[test]
+fn a_plan_of_too_many_nodes_is_refused_with_the_spacing_that_would_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    for command in ["plan", "solve"] {
+        let output = meshless(&[command, scene.to_str().unwrap(), "--spacing", "1e-12"]);
+        let text = stderr(&output);
+        assert!(!output.status.success(), "{command}");
+        assert!(text.contains("--spacing: about 1.000e12 nodes"), "{text}");
+        assert!(text.contains("multiply the spacing by 52500"), "{text}");
+    }
+}

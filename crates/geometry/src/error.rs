@@ -39,7 +39,7 @@ pub enum GeometryError {
     /// More nodes than allowed; found before any is generated where the estimate shows it.
     #[error(
         "about {estimate:.3e} nodes, but at most {limit} are allowed; \
-         multiply the spacing by {factor:.3} or allow more nodes"
+         multiply the spacing by {factor:.3}"
     )]
     TooManyNodes {
         /// Estimated number of nodes.

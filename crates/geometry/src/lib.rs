@@ -46,8 +46,8 @@ mod vector;
 
 pub use aabb::Aabb;
 pub use cloud::{
-    BoundaryNode, Cloud, CloudParams, CloudQuality, Layout, Spacing, SpacingFn, Touch, estimate_nodes,
-    generate, quality,
+    BoundaryNode, Cloud, CloudParams, CloudQuality, Layout, Spacing, SpacingFn, Touch, check_size,
+    estimate_nodes, generate, quality,
 };
 pub use domain::{Domain, FaceId};
 pub use error::GeometryError;

@@ -1,9 +1,8 @@
 //! What the command line changes in a scene.
 
-use meshless_expr::Expr;
 use thiserror::Error;
 
-use crate::scene::{ExprField, MethodName, Scene};
+use crate::scene::{ExprField, MethodName, Scene, SceneError};
 
 /// Values that take the place of the scene's.
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,13 +30,8 @@ pub enum OverrideError {
     #[error("--order {0}: the stencils reproduce polynomials of degree 2 to 8")]
     Order(usize),
     /// Not a spacing.
-    #[error("--spacing {text}: {reason}")]
-    Spacing {
-        /// What was given.
-        text: String,
-        /// Why not.
-        reason: String,
-    },
+    #[error(transparent)]
+    Spacing(#[from] SceneError),
 }
 
 impl Overrides<'_> {
@@ -56,17 +50,8 @@ impl Overrides<'_> {
             scene.method.order = Some(order);
         }
         if let Some(text) = self.spacing {
-            scene.points.spacing = spacing(text, scene.dimension)?;
+            scene.points.spacing = ExprField::from_command_line("--spacing", text, scene.dimension)?;
         }
         Ok(())
     }
-}
-
-fn spacing(text: &str, dimension: usize) -> Result<ExprField, OverrideError> {
-    let refuse = |reason: String| OverrideError::Spacing { text: text.to_owned(), reason };
-    let expr = Expr::parse(text, &["x", "y", "z"][..dimension]).map_err(|e| refuse(e.to_string()))?;
-    if expr.as_constant().is_some_and(|s| !(s > 0.0 && s.is_finite())) {
-        return Err(refuse("must be positive and finite".to_owned()));
-    }
-    Ok(ExprField::from_command_line(text, expr))
 }

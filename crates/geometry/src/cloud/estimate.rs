@@ -55,17 +55,20 @@ fn half_layer<const D: usize>(domain: &Domain<D>, spacing: &Spacing<D>) -> Resul
     Ok(nodes)
 }
 
-/// Refuses clouds that would be far too large before any node exists.
-pub(super) fn check_size<const D: usize>(
+/// About how many nodes a cloud has, as [`estimate_nodes`]; refused where there are more than `limit`.
+///
+/// # Errors
+/// [`GeometryError::TooManyNodes`] with the spacing that would do, and those of [`estimate_nodes`].
+pub fn check_size<const D: usize>(
     domain: &Domain<D>,
     spacing: &Spacing<D>,
     limit: usize,
-) -> Result<(), GeometryError> {
+) -> Result<f64, GeometryError> {
     let estimate = estimate_nodes(domain, spacing)?;
     if estimate > limit as f64 {
         return Err(too_many::<D>(estimate, limit));
     }
-    Ok(())
+    Ok(estimate)
 }
 
 pub(crate) fn too_many<const D: usize>(estimate: f64, limit: usize) -> GeometryError {

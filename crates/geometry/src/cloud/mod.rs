@@ -9,8 +9,8 @@ mod params;
 mod quality;
 mod validate;
 
-pub use estimate::estimate_nodes;
 pub(crate) use estimate::too_many;
+pub use estimate::{check_size, estimate_nodes};
 pub use generate::generate;
 pub use params::{CloudParams, Layout, Spacing, SpacingFn};
 pub use quality::{CloudQuality, quality};

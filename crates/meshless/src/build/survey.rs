@@ -1,11 +1,11 @@
 //! What can be told about a scene without a cloud.
 
-use meshless_geometry::estimate_nodes;
+use meshless_geometry::check_size;
 
 use super::fields::materials;
 use super::shapes::{domain, explain_cloud, regions, spacing};
-use crate::Error;
 use crate::scene::{Scene, ShapeSpec};
+use crate::{Error, MAX_NODES};
 
 /// Points along each axis at which a variable diffusivity is sampled.
 const SAMPLES_PER_AXIS: [usize; 3] = [257, 65, 17];
@@ -15,7 +15,7 @@ pub(crate) fn is_curved(scene: &Scene) -> bool {
     !matches!(scene.domain.shape, ShapeSpec::Box(_)) || !scene.holes.is_empty()
 }
 
-/// About how many nodes the cloud will have.
+/// About how many nodes the cloud will have; refused where they are too many.
 pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
     match scene.dimension {
         1 => estimated_nodes_in::<1>(scene),
@@ -25,7 +25,7 @@ pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
 }
 
 fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
-    estimate_nodes(&domain::<D>(scene)?, &spacing::<D>(scene)).map_err(|e| explain_cloud(scene, e))
+    check_size(&domain::<D>(scene)?, &spacing::<D>(scene), MAX_NODES).map_err(|e| explain_cloud(scene, e))
 }
 
 /// Largest over smallest diffusivity: of the constants where all are constant, else of samples on a lattice.

@@ -24,10 +24,11 @@ pub struct ExprField {
 }
 
 impl ExprField {
-    /// An expression that the command line gave in place of the scene's; errors about it show the option's text.
-    pub fn from_command_line(text: &str, expr: Expr) -> Self {
-        let place = Place::new(&Arc::new(Source::new("command line", text)), "", 0..text.len());
-        Self { text: text.to_owned(), expr, place }
+    /// A positive expression that an option of the command line gives in place of the scene's; errors about it show the
+    /// option and its text.
+    pub(crate) fn from_command_line(option: &str, text: &str, dimension: usize) -> Result<Self, SceneError> {
+        let place = Place::new(&Arc::new(Source::new("command line", text)), option, 0..text.len());
+        parse(text, &place, dimension)?.check_positive()
     }
 
     /// The value, if the expression is constant and therefore finite.
@@ -65,6 +66,7 @@ fn parse(text: &str, place: &Place, dimension: usize) -> Result<ExprField, Scene
     let expr = Expr::parse(text, &VARIABLES[..dimension]).map_err(|error| {
         let ParseError { span, message, help } = error;
         let place = match content_offset(place.text(), text) {
+            _ if place.text() == text => place.at(span),
             Some(offset) => place.at(shift(&span, place.span.start + offset)),
             None => place.clone(),
         };
@@ -110,8 +112,14 @@ mod tests {
 
     #[test]
     fn errors_about_the_command_line_show_its_text() {
-        let expr = Expr::parse("0.1*x", &["x"]).expect("valid");
-        let error = ExprField::from_command_line("0.1*x", expr).place.error("not positive", "");
-        assert_eq!(error.to_string(), "command line:1:1: not positive\n    1 | 0.1*x\n      | ^^^^^");
+        let ask = |text| ExprField::from_command_line("--spacing", text, 2);
+        let error = ask("-0.1").expect_err("not positive").to_string();
+        assert_eq!(
+            error,
+            "command line:1:1: --spacing: expected a positive value, found -0.1\n    1 | -0.1\n      | ^^^^"
+        );
+        let error = ask("0.1*(x+").expect_err("not closed").to_string();
+        assert!(error.starts_with("command line:1:8: --spacing: "), "{error}");
+        assert!(ask("0.1 + z").is_err() && ask("0.1 + y").is_ok());
     }
 }
