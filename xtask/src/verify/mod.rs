@@ -7,6 +7,7 @@ mod figure;
 mod gfdm;
 mod hard;
 mod html;
+mod jobs;
 mod options;
 mod order;
 mod row;

@@ -18,7 +18,7 @@ pub(crate) struct Runner<'a> {
     pub(crate) outcomes: Vec<Outcome>,
     /// Runs that ended with an error, in words.
     pub(crate) failures: Vec<String>,
-    suite: &'static str,
+    pub(crate) suite: &'static str,
 }
 
 /// What is done besides solving.
@@ -69,14 +69,7 @@ impl<'a> Runner<'a> {
         if !self.options.wants(key.case, key.variant.method) || study::find(&self.outcomes, &key).is_some() {
             return study::find(&self.outcomes, &key);
         }
-        progress(&format!(
-            "{} {} {} {:e} level {}",
-            self.suite,
-            key.case,
-            key.variant.label(),
-            key.jump,
-            key.level
-        ));
+        announce(self.suite, &key);
         match solve(problem, &key, extra) {
             Ok(solution) => {
                 look(&solution);
@@ -85,20 +78,20 @@ impl<'a> Runner<'a> {
                 self.outcomes.last()
             }
             Err(error) => {
-                self.failures.push(format!(
-                    "{} with {} at {:e}, level {}: {error}",
-                    key.case,
-                    key.variant.label(),
-                    key.jump,
-                    key.level
-                ));
+                self.fail(&key, &error.to_string());
                 None
             }
         }
     }
+
+    /// Notes a run that ended with an error.
+    pub(crate) fn fail(&mut self, key: &Key, error: &str) {
+        let Key { case, variant, jump, level, .. } = key;
+        self.failures.push(format!("{case} with {} at {jump:e}, level {level}: {error}", variant.label()));
+    }
 }
 
-fn row(suite: &'static str, key: &Key, extra: Extra, solution: &Solution) -> Row {
+pub(crate) fn row(suite: &'static str, key: &Key, extra: Extra, solution: &Solution) -> Row {
     let report = &solution.report;
     let mut params = vec![format!("jump={:e}", key.jump)];
     params.extend(key.variant.params());
@@ -135,6 +128,12 @@ fn row(suite: &'static str, key: &Key, extra: Extra, solution: &Solution) -> Row
         peak_memory_mb: report.peak_memory_mb,
         threads: rayon::current_num_threads(),
     }
+}
+
+/// Says that a run begins.
+pub(crate) fn announce(suite: &str, key: &Key) {
+    let Key { case, variant, jump, level, .. } = key;
+    progress(&format!("{suite} {case} {} {jump:e} level {level}", variant.label()));
 }
 
 /// Says on a terminal what is being run, on one line that is written over.

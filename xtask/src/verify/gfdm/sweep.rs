@@ -2,6 +2,7 @@
 
 use super::cases::{CASES, Case};
 use super::{AUTO, CONSERVATIVE, HYBRID, POSITIVE, Variant, radius};
+use crate::verify::jobs::Job;
 use crate::verify::options::Effort;
 use crate::verify::runner::{Extra, Runner};
 use crate::verify::study::Key;
@@ -26,25 +27,23 @@ const TOLERANCE: f64 = 1e-11;
 
 pub(super) fn sweep(runner: &mut Runner<'_>) {
     let effort = runner.options.effort;
+    let mut jobs = Vec::new();
     for case in &CASES {
         for variant in case.variants() {
             for jump in case.jumps(effort) {
-                ladder(runner, case, variant, jump, rungs(effort, case, &variant, jump));
+                jobs.extend(ladder(case, variant, jump, rungs(effort, case, &variant, jump)));
             }
         }
         if case.name == "interior" {
             for variant in [HYBRID, CONSERVATIVE] {
-                ladder(runner, case, variant, BEYOND, CLAIMED + 1);
+                jobs.extend(ladder(case, variant, BEYOND, CLAIMED + 1));
             }
             // Whether the fully conservative method loses digits from 1e8 to 1e10.
-            for jump in [1e8, 1e10] {
-                single(runner, case, CONSERVATIVE, jump, CLAIMED, SEED);
-            }
-            for seed in SEEDS {
-                single(runner, case, HYBRID, 1e10, CLAIMED, seed);
-            }
+            jobs.extend([1e8, 1e10].map(|jump| single(case, CONSERVATIVE, jump, CLAIMED, SEED)));
+            jobs.extend(SEEDS.map(|seed| single(case, HYBRID, 1e10, CLAIMED, seed)));
         }
     }
+    runner.run_all(jobs);
 }
 
 /// How many rungs of the ladder are climbed. What no claim and no diagram rests on is left out where time is short.
@@ -79,14 +78,12 @@ fn rungs(effort: Effort, case: &Case, variant: &Variant, jump: f64) -> usize {
     rungs + finer
 }
 
-fn ladder(runner: &mut Runner<'_>, case: &Case, variant: Variant, jump: f64, rungs: usize) {
-    for level in 0..rungs {
-        single(runner, case, variant, jump, level, SEED);
-    }
+fn ladder(case: &Case, variant: Variant, jump: f64, rungs: usize) -> impl Iterator<Item = Job> {
+    (0..rungs).map(move |level| single(case, variant, jump, level, SEED))
 }
 
-fn single(runner: &mut Runner<'_>, case: &Case, variant: Variant, jump: f64, level: usize, seed: u64) {
+fn single(case: &Case, variant: Variant, jump: f64, level: usize, seed: u64) -> Job {
     let key = Key { case: case.name, variant, jump, level, seed };
     let extra = Extra { krylov: (level >= ITERATIVE).then_some(TOLERANCE), ..Extra::default() };
-    runner.run_with(&(case.scene)(jump, radius(level), seed), key, extra, |_| {});
+    Job { problem: (case.scene)(jump, radius(level), seed), key, extra }
 }

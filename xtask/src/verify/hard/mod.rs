@@ -6,6 +6,7 @@ use problems::{Rings, rings};
 
 use super::claims::Claims;
 use super::figure::{Curve, Figure};
+use super::jobs::Job;
 use super::options::{Effort, Options};
 use super::order;
 use super::runner::{Extra, Runner};
@@ -136,14 +137,8 @@ pub(super) fn run(options: &Options) -> Study {
         Effort::Full => CLAIMED + 3,
     };
     let mut sections = Vec::new();
+    runner.run_all(FAMILIES.iter().flat_map(|family| family.jobs(rungs)).collect());
     for family in FAMILIES.iter().filter(|f| options.wants(f.case, AUTO.method)) {
-        for (jump, seed) in family.members() {
-            for level in 0..rungs {
-                let text = (family.scene)(jump, spacing(level), seed);
-                let extra = Extra { grid: family.grid, ..Extra::default() };
-                runner.run_with(&text, family.key(jump, level, seed), extra, |_| {});
-            }
-        }
         family.check(&runner, &mut claims);
         sections.push(family.section(&runner));
     }
@@ -155,6 +150,16 @@ pub(super) fn run(options: &Options) -> Study {
 impl Family {
     fn members(&self) -> impl Iterator<Item = (f64, u64)> {
         self.jumps.iter().flat_map(|&jump| self.seeds.iter().map(move |&seed| (jump, seed)))
+    }
+
+    fn jobs(&self, rungs: usize) -> impl Iterator<Item = Job> {
+        self.members().flat_map(move |(jump, seed)| {
+            (0..rungs).map(move |level| Job {
+                problem: (self.scene)(jump, spacing(level), seed),
+                key: self.key(jump, level, seed),
+                extra: Extra { grid: self.grid, ..Extra::default() },
+            })
+        })
     }
 
     fn key(&self, jump: f64, level: usize, seed: u64) -> Key {
