@@ -30,6 +30,13 @@ const VARIANTS: [Variant; 5] = [
     STRONG,
 ];
 
+/// How much smaller the error of the hybrid must be at h = 0.025 and below: a tenth of what the reference has (0.49
+/// against 6e-4).
+const BETTER: f64 = 100.0;
+
+/// The same at h = 0.05, where the strong form, which does not converge, is right by accident on some clouds.
+const BETTER_AT_ONCE: f64 = 10.0;
+
 /// How much longer the hybrid may take than the strong form (appendix B of Kraus et al. 2022: not longer at all).
 const NO_DRAWBACK: f64 = 1.5;
 
@@ -82,7 +89,7 @@ fn check(runner: &Runner<'_>, finest: usize, claims: &mut Claims) {
         CASES[0],
         "error of the strong form over that of the hybrid, finest cloud",
         accuracy,
-        10.0,
+        if runner.options.effort == Effort::Quick { BETTER_AT_ONCE } else { BETTER },
     );
     if runner.options.effort > Effort::Quick {
         let longer = pair.map(|(hybrid, strong)| hybrid.row.t_total / strong.row.t_total);

@@ -29,20 +29,28 @@ pub(super) fn two_strip(runner: &Runner<'_>, claims: &mut Claims) {
 }
 
 /// Why unscaled strong forms do not show the paper's orders here.
-const UNSCALED: &str = "Without scaling the gradient of the smeared coefficient exceeds the coefficient itself by orders of \
-    magnitude on the soft side; such rows have no diagonal to speak of, and the error hangs on single nodes: on our \
-    Poisson-disk clouds it jumps up and down from rung to rung instead of following a trend.";
+const UNSCALED: &str = "Without scaling some 300 rows at the interface (of 58 000, jump 1e10, h = 0.025) have a diagonal of the wrong \
+    sign, smoothed or not; with scaling none has. What they do hangs on the cloud: on three of them the error with 2 cycles is 0.10, \
+    2.1 and 0.03, solved to a residual of 1e-15 each time.";
+
+/// The same for the error of one cloud.
+const ONE_CLOUD: &str = "Solved to a residual of 1e-15 on three clouds it is 0.51, 0.79 and 0.34: 266 rows at the interface have a \
+    diagonal of the wrong sign, and the paper shows one cloud.";
 
 /// Why an order may be fitted to a method that does not converge.
-const DIVERGES: &str = "On coarse clouds the error exceeds the solution itself several times, which tilts the fitted line; the \
-    error on the finest cloud is in the next row.";
+const DIVERGES: &str = "The error goes up and down, from several times the solution itself on coarse clouds (jump 1e4: 3.8, 4.7, 0.7, \
+    2.4), which tilts the fitted line; the error on the finest cloud is in the next row.";
+
+/// Why strong Neumann rows are less wrong here.
+const STRONG_NEUMANN: &str = "On three clouds the ratio is 2.3, 2.6 and 2.6: strong Neumann rows leave 4.2e-4 to 5.4e-4 on them (3.5e-4 to \
+    6.2e-4 without the correction vector), and 8.9e-4 in the reference on a cloud of its own.";
 
 /// Error of a method that does not converge.
 const STILL_WRONG: f64 = 0.05;
 
-/// Why smoothing does not help against large jumps here.
-const SCALED: &str = "With scaling alone the error hardly depends on the jump on these clouds, so there is nothing for the \
-    smoothing to improve.";
+/// What smoothing does instead.
+const SCALED: &str = "With scaling alone the error at 1e10 is hardly larger than at 1e2. What smoothing brings is convergence: at 1e10 \
+    halving h takes the error from 1.3e-2 to 1.8e-2 without it, and from 2.0e-2 to 1.0e-2 with 2 cycles.";
 
 /// The jumps at which smoothing and scaling are compared.
 const COMPARED: [f64; 3] = [1e2, 1e4, 1e10];
@@ -146,12 +154,9 @@ fn hybrids(view: &View<'_>, claims: &mut Claims) {
     );
     if view.effort > Effort::Quick {
         let error = |variant, jump| view.error(variant, jump, CLAIMED);
-        claims.within(
-            view.case,
-            "strong form, no scaling, no smoothing, jump 1e10, h = 0.025",
-            error(Variant::strong(0, false), 1e10),
-            [0.05, 0.3],
-        );
+        let claim = "strong form, no scaling, no smoothing, jump 1e10, h = 0.025";
+        let measured = error(Variant::strong(0, false), 1e10);
+        claims.explained(view.case, claim, measured, [0.05, 0.3], [0.3, 1.0], ONE_CLOUD);
         claims.within(
             view.case,
             "strong form, scaled, 2 cycles, jump 1e10, h = 0.025",
@@ -172,9 +177,7 @@ fn neumann(view: &View<'_>, claims: &mut Claims) {
     let gain = |level| view.ratio((strong, 1e10), (HYBRID, 1e10), level);
     let claim =
         "conservative Neumann rows are needed (ours): error without over that with, jump 1e10, h = 0.025";
-    claims.at_least(view.case, claim, gain(CLAIMED), 1.5);
-    let worst = super::view::largest((0..=CLAIMED).filter_map(gain));
-    claims.at_least(view.case, "the largest such ratio over the ladder (ours)", worst, 2.0);
+    claims.explained(view.case, claim, gain(CLAIMED), [4.0, f64::INFINITY], [1.5, 4.0], STRONG_NEUMANN);
 }
 
 /// On a uniform cloud a small jump leaves every row diagonally dominant.
