@@ -5,6 +5,7 @@
 
 pub mod kraus;
 pub mod order;
+pub mod particle_difference;
 pub mod small;
 pub mod smooth;
 pub mod solve;

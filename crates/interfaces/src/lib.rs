@@ -51,6 +51,7 @@ pub mod gfdm;
 mod gradient;
 mod local;
 mod method;
+pub mod particle_difference;
 mod problem;
 mod row_report;
 mod sample;

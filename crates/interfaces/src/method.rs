@@ -44,6 +44,8 @@ pub enum RowKind {
     Strong,
     /// Collocation of a boundary condition by a local least-squares stencil.
     StrongBoundary,
+    /// Collocation of the equation by a stencil that the interface condition is built into.
+    Constrained,
     /// Balance of fluxes over the node's Voronoi cell.
     Conservative,
 }
@@ -57,6 +59,8 @@ pub struct Counts {
     pub enlarged: usize,
     /// Interior nodes whose strong row is not diagonally dominant (the set `I_{sigma,0}` of Kraus et al. 2022).
     pub flagged: usize,
+    /// Stencils that an interface condition is built into.
+    pub constrained: usize,
     /// Voronoi cells.
     pub cells: usize,
 }

@@ -43,4 +43,11 @@ pub const METHODS: &[MethodInfo] = &[
         limits: "balances over the Voronoi cell of every node: conservative, maximum principle, any contrast; second \
                  order only on regular clouds",
     },
+    MethodInfo {
+        name: "particle-difference",
+        order: "2 / 2",
+        dimensions: "1, 2, 3",
+        limits: "stencils that the interface condition is built into, no further unknowns: second order up to the \
+                 interface, jumps of u and of the flux; no maximum principle, not conservative",
+    },
 ];

@@ -66,5 +66,6 @@ fn row_code(kind: RowKind) -> i64 {
         RowKind::Strong => 1,
         RowKind::StrongBoundary => 2,
         RowKind::Conservative => 3,
+        RowKind::Constrained => 4,
     }
 }

@@ -113,6 +113,8 @@ pub struct NodeReport {
     pub strong_boundary: usize,
     /// Balances over Voronoi cells.
     pub conservative: usize,
+    /// Stencils that an interface condition is built into.
+    pub constrained: usize,
     /// Nodes whose strong row is not diagonally dominant.
     pub flagged: usize,
     /// Stencils that needed a larger support than the one given.

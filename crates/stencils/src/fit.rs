@@ -1,6 +1,6 @@
 //! The local fit: one factorisation for all operators of a node.
 
-use crate::{FitScratch, Functional, Monomials, StencilError};
+use crate::{BasisValues, FitScratch, Functional, Monomials, StencilError};
 
 /// A reproduction condition that is violated by more than this, relative to the largest moment, is not met.
 pub const REPRODUCTION_TOLERANCE: f64 = 1e-8;
@@ -71,30 +71,76 @@ impl<const D: usize> LocalFit<D> {
         radius: f64,
         scratch: &mut FitScratch<D>,
     ) -> Result<FitDiagnosis, StencilError> {
+        self.factor_with(offsets, weights, radius, 0, &|_| (), scratch)
+    }
+
+    /// Like [`Self::factor`], in a basis that is not that of the monomials: `edit` is given their values at the points
+    /// and changes them; `extra` further functions come after the monomials, zero until `edit` sets them.
+    ///
+    /// [`Self::coefficients_for`] then takes the values of the operator on the functions of that basis, and
+    /// [`Self::moments_at`] gives those on the monomials.
+    ///
+    /// # Errors
+    /// Those of [`Self::factor`].
+    pub fn factor_with(
+        &self,
+        offsets: &[[f64; D]],
+        weights: &[f64],
+        radius: f64,
+        extra: usize,
+        edit: &dyn Fn(&mut BasisValues<'_>),
+        scratch: &mut FitScratch<D>,
+    ) -> Result<FitDiagnosis, StencilError> {
         check(offsets, weights, radius)?;
         scratch.radius = radius;
         scratch.weights.clear();
         scratch.weights.extend_from_slice(weights);
-        self.fill(offsets, scratch);
+        scratch.resize_moments(self.monomials.count() + extra);
+        self.fill(offsets, extra, edit, scratch);
         if scratch.qr.factor(self.params.rank_tolerance) {
             let (rank, condition) = (scratch.qr.rank(), scratch.qr.condition());
             return Ok(FitDiagnosis { rank, condition, pivoted: false });
         }
-        self.fill(offsets, scratch);
+        self.fill(offsets, extra, edit, scratch);
         scratch.qr.factor_pivoted(self.params.rank_tolerance);
         Ok(FitDiagnosis { rank: scratch.qr.rank(), condition: scratch.qr.condition(), pivoted: true })
     }
 
-    /// Writes `W K^T` into the factorisation.
-    fn fill(&self, offsets: &[[f64; D]], scratch: &mut FitScratch<D>) {
+    /// Writes `W K^T` into the factorisation, and edits it.
+    fn fill(
+        &self,
+        offsets: &[[f64; D]],
+        extra: usize,
+        edit: &dyn Fn(&mut BasisValues<'_>),
+        scratch: &mut FitScratch<D>,
+    ) {
         let m = self.monomials.count();
-        scratch.qr.resize(offsets.len(), m);
+        scratch.qr.resize(offsets.len(), m + extra);
         let inverse = 1.0 / scratch.radius;
         scratch.qr.column_mut(0).copy_from_slice(&scratch.weights);
         // Every monomial is one of lower degree, which comes before it, times a coordinate.
         for (column, &(parent, axis)) in self.monomials.parents().iter().enumerate().skip(1) {
             scratch.qr.multiply_column(parent, column, offsets, axis, inverse);
         }
+        (m..m + extra).for_each(|column| scratch.qr.column_mut(column).fill(0.0));
+        edit(&mut BasisValues { qr: &mut scratch.qr, weights: &scratch.weights });
+    }
+
+    /// Adds the values of an operator, taken at `at`, on the monomials of `x / radius` to `out`.
+    ///
+    /// # Errors
+    /// [`StencilError::DegreeTooLow`] for an operator of an order above the degree, and a length that does not agree.
+    pub fn moments_at(
+        &self,
+        functional: &Functional<D>,
+        at: &[f64; D],
+        radius: f64,
+        out: &mut [f64],
+    ) -> Result<(), StencilError> {
+        functional.check(self.params.degree)?;
+        check_length("moments", out.len(), self.monomials.count())?;
+        functional.add_moments(&self.monomials, &at.map(|x| x / radius), radius, out);
+        Ok(())
     }
 
     /// Coefficients of an operator, one for each offset, in physical units.
@@ -116,7 +162,8 @@ impl<const D: usize> LocalFit<D> {
         outcome
     }
 
-    /// Coefficients of the operator whose values on the monomials of `offset / radius` are `moments`.
+    /// Coefficients of the operator whose values on the monomials of `offset / radius` (or on the functions of the
+    /// edited basis) are `moments`.
     ///
     /// # Errors
     /// [`StencilError::Unresolvable`] where the support does not determine the operator.
@@ -126,7 +173,7 @@ impl<const D: usize> LocalFit<D> {
         scratch: &mut FitScratch<D>,
         out: &mut [f64],
     ) -> Result<(), StencilError> {
-        let (points, count) = (scratch.points(), self.monomials.count());
+        let (points, count) = (scratch.points(), scratch.qr.columns());
         check_length("coefficients", out.len(), points)?;
         check_length("moments", moments.len(), count)?;
         let remainder = scratch.qr.least_norm(moments, &mut scratch.z, out);

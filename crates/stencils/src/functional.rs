@@ -59,28 +59,40 @@ impl<const D: usize> Functional<D> {
     /// Moments of the functional: its values on the monomials of `(x - centre) / radius`.
     pub(crate) fn moments(&self, monomials: &Monomials<D>, radius: f64, out: &mut [f64]) {
         out.fill(0.0);
-        let origin = [0.0; D];
+        self.add_moments(monomials, &[0.0; D], radius, out);
+    }
+
+    /// Adds its values, taken at `origin` in units of the radius, on the monomials of `x / radius`.
+    pub(crate) fn add_moments(
+        &self,
+        monomials: &Monomials<D>,
+        origin: &[f64; D],
+        radius: f64,
+        out: &mut [f64],
+    ) {
         let mut add = |order: [u8; D], at: &[f64; D], factor: f64| {
             let total: i32 = order.iter().map(|&o| i32::from(o)).sum();
             monomials.add_derivative(&order, at, factor * radius.powi(-total), out);
         };
         match *self {
-            Self::Value => add([0; D], &origin, 1.0),
-            Self::ValueAt(offset) => add([0; D], &offset.map(|x| x / radius), 1.0),
-            Self::Partial(axis) => add(unit(axis, 1), &origin, 1.0),
-            Self::Second(a, b) if a == b => add(unit(a, 2), &origin, 1.0),
+            Self::Value => add([0; D], origin, 1.0),
+            Self::ValueAt(offset) => {
+                add([0; D], &std::array::from_fn(|k| origin[k] + offset[k] / radius), 1.0);
+            }
+            Self::Partial(axis) => add(unit(axis, 1), origin, 1.0),
+            Self::Second(a, b) if a == b => add(unit(a, 2), origin, 1.0),
             Self::Second(a, b) => {
                 let mut order = unit(a, 1);
                 order[b] = 1;
-                add(order, &origin, 1.0);
+                add(order, origin, 1.0);
             }
-            Self::Derivative(order) => add(order, &origin, 1.0),
-            Self::Laplacian => (0..D).for_each(|k| add(unit(k, 2), &origin, 1.0)),
-            Self::Directional(v) => (0..D).for_each(|k| add(unit(k, 1), &origin, v[k])),
+            Self::Derivative(order) => add(order, origin, 1.0),
+            Self::Laplacian => (0..D).for_each(|k| add(unit(k, 2), origin, 1.0)),
+            Self::Directional(v) => (0..D).for_each(|k| add(unit(k, 1), origin, v[k])),
             Self::Diffusion { eta, gradient } => {
                 for k in 0..D {
-                    add(unit(k, 2), &origin, eta);
-                    add(unit(k, 1), &origin, gradient[k]);
+                    add(unit(k, 2), origin, eta);
+                    add(unit(k, 1), origin, gradient[k]);
                 }
             }
         }

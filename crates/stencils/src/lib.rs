@@ -32,6 +32,7 @@
 //! # Ok::<(), meshless_stencils::StencilError>(())
 //! ```
 
+mod basis;
 mod diagnosis;
 mod error;
 mod fit;
@@ -42,6 +43,7 @@ mod scratch;
 mod set;
 mod weight;
 
+pub use basis::BasisValues;
 pub use diagnosis::{SignDiagnosis, StencilDiagnosis};
 pub use error::StencilError;
 pub use fit::{FitDiagnosis, FitParams, LocalFit, REPRODUCTION_TOLERANCE};

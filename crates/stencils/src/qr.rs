@@ -50,6 +50,10 @@ impl Qr {
         }
     }
 
+    pub(crate) fn columns(&self) -> usize {
+        self.columns
+    }
+
     pub(crate) fn rank(&self) -> usize {
         self.rank
     }

@@ -23,6 +23,12 @@ impl<const D: usize> FitScratch<D> {
         Self { qr, weights, moments: vec![0.0; monomials], z: vec![0.0; monomials], radius: 1.0 }
     }
 
+    /// Room for the values of an operator on so many functions.
+    pub(crate) fn resize_moments(&mut self, functions: usize) {
+        self.moments.resize(functions, 0.0);
+        self.z.resize(functions, 0.0);
+    }
+
     /// Points of the support that was factored last.
     pub fn points(&self) -> usize {
         self.weights.len()

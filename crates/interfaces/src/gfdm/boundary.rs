@@ -22,7 +22,7 @@ pub(super) struct BoundaryRow {
 /// A condition on the flux in the form `a u + eta du/dn = g`.
 ///
 /// `eta` turns du/dn into a flux; the caller never passes a Dirichlet condition.
-pub(super) fn as_flux(condition: &Condition, eta: f64) -> Option<(f64, f64)> {
+pub(crate) fn as_flux(condition: &Condition, eta: f64) -> Option<(f64, f64)> {
     match *condition {
         Condition::Dirichlet(_) => None,
         Condition::Neumann(g) => Some((0.0, eta * g)),

@@ -18,9 +18,11 @@ use rayon::prelude::*;
 use crate::method::{Counts, Discretization, Method, RowKind};
 use crate::{MethodError, Problem};
 use boundary::BoundaryRow;
+pub(crate) use boundary::as_flux;
 use conservative::{CellBalance, CellRow};
 pub use params::{GfdmParams, Selection, StrongParams};
 use strong::StrongRows;
+pub(crate) use strong::add_correction;
 
 /// A generalised finite difference method.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +104,9 @@ impl Parts {
         for (i, b) in rhs.iter_mut().enumerate() {
             *b = match self.kinds[i] {
                 RowKind::Dirichlet => self.known[i].unwrap_or(0.0),
-                RowKind::Strong => strong_measure(problem, i) * problem.source.map_or(0.0, |f| f[i]),
+                RowKind::Strong | RowKind::Constrained => {
+                    strong_measure(problem, i) * problem.source.map_or(0.0, |f| f[i])
+                }
                 RowKind::StrongBoundary => self.boundary[boundary_index[i] as usize]
                     .as_ref()
                     .map_or(0.0, |row| boundary_measure(problem, i) * row.rhs),
@@ -111,7 +115,7 @@ impl Parts {
         }
         let rows = DifferenceMatrix::from_rows(self.kinds.len(), |i, out| match self.kinds[i] {
             RowKind::Dirichlet => out.add_to_row_sum(1.0),
-            RowKind::Strong => {
+            RowKind::Strong | RowKind::Constrained => {
                 if let Some(strong) = &self.strong {
                     let measure = strong_measure(problem, i);
                     let (neighbors, row) = strong.row(problem, i);

@@ -142,7 +142,7 @@ impl<'a, const D: usize> StrongOperator<'a, D> {
 }
 
 /// Adds `alpha_min xi` (18) to a row; both are given off the diagonal, where `gamma_ii = -sum gamma_ij` and `xi_ii = 1`.
-pub(super) fn add_correction(row: &mut [f64], xi: &[f64]) {
+pub(crate) fn add_correction(row: &mut [f64], xi: &[f64]) {
     let diagonal = -row.iter().sum::<f64>();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mixed = diagonal + dot(row, xi);

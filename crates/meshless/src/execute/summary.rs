@@ -50,6 +50,7 @@ pub(super) fn report<const D: usize>(
             strong: count(RowKind::Strong),
             strong_boundary: count(RowKind::StrongBoundary),
             conservative: count(RowKind::Conservative),
+            constrained: count(RowKind::Constrained),
             flagged: counts.flagged,
             enlarged: counts.enlarged,
         },

@@ -79,6 +79,9 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
         Stage::DiffusionStencils,
         if steps.stencils { "the diffusivity is one constant" } else { steps.no_stencils },
     );
+    if let Some(constrained) = steps.constrained {
+        decide(constrained, Stage::ConstrainedStencils, "nothing jumps anywhere");
+    }
     decide(steps.selection, Stage::NodeSelection, "the method does not mix rows");
     decide(steps.may_need_cells, Stage::Cells, "no row is conservative");
     decide(true, Stage::Assembly, "");

@@ -67,6 +67,8 @@ pub enum Stage {
     LaplacianStencils,
     /// Least-squares stencils of `div(eta grad u)`, with a gradient of eta.
     DiffusionStencils,
+    /// Stencils near interfaces that the conditions there are built into.
+    ConstrainedStencils,
     /// Find the nodes whose rows must be conservative.
     NodeSelection,
     /// Voronoi cells of the conservative nodes, and balances over them.

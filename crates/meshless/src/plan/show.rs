@@ -17,6 +17,7 @@ impl Stage {
             Self::Source => "source",
             Self::LaplacianStencils => "Laplacian stencils",
             Self::DiffusionStencils => "diffusion stencils",
+            Self::ConstrainedStencils => "constrained stencils",
             Self::NodeSelection => "node selection",
             Self::Cells => "Voronoi cells",
             Self::Assembly => "assembly",

@@ -4,7 +4,7 @@ use meshless_expr::nearest_name;
 
 use super::error::SceneError;
 use super::reader::{Table, Value};
-use super::spec::{MethodName, MethodOptions, MethodSpec, SolverName};
+use super::spec::{MethodName, MethodOptions, MethodSpec, SolverName, WedgeName, WeightName};
 
 /// Lowest and highest polynomial degree of stencils.
 const ORDERS: [u64; 2] = [2, 8];
@@ -13,23 +13,18 @@ const ORDERS: [u64; 2] = [2, 8];
 const MAX_SMOOTHING: u64 = 100;
 
 /// Methods by name.
-const METHODS: [(&str, MethodName); 5] = [
+const METHODS: [(&str, MethodName); 6] = [
     ("auto", MethodName::Auto),
     ("gfdm-classical", MethodName::GfdmClassical),
     ("gfdm-conservative", MethodName::GfdmConservative),
     ("gfdm-positive", MethodName::GfdmPositive),
     ("gfdm-hybrid", MethodName::GfdmHybrid),
+    ("particle-difference", MethodName::ParticleDifference),
 ];
 
 /// Methods that are recognised and not built.
-const FUTURE_METHODS: [&str; 6] = [
-    "particle-difference",
-    "particle-difference-extended",
-    "immersed-interface",
-    "surface-reaction",
-    "sharp",
-    "free-space",
-];
+const FUTURE_METHODS: [&str; 5] =
+    ["particle-difference-extended", "immersed-interface", "surface-reaction", "sharp", "free-space"];
 
 /// Solvers by name.
 const SOLVERS: [(&str, SolverName); 5] = [
@@ -39,6 +34,13 @@ const SOLVERS: [(&str, SolverName); 5] = [
     ("gmres", SolverName::Gmres),
     ("multigrid", SolverName::Multigrid),
 ];
+
+/// Weights by name.
+const WEIGHTS: [(&str, WeightName); 2] =
+    [("quartic", WeightName::Quartic), ("exponential", WeightName::Exponential)];
+
+/// Wedges by name.
+const WEDGES: [(&str, WedgeName); 2] = [("plane", WedgeName::Plane), ("varying", WedgeName::Varying)];
 
 /// Methods with stencils in strong form.
 const STRONG: &[MethodName] = &[MethodName::GfdmClassical, MethodName::GfdmPositive, MethodName::GfdmHybrid];
@@ -58,16 +60,21 @@ const EVERY: &[MethodName] = &[
     MethodName::GfdmConservative,
     MethodName::GfdmPositive,
     MethodName::GfdmHybrid,
+    MethodName::ParticleDifference,
 ];
+/// Methods whose stencils know interfaces.
+const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
 
 /// Options and the methods that have them; none of the methods that are built has the last ones.
-const OPTIONS: [(&str, &[MethodName]); 9] = [
+const OPTIONS: [(&str, &[MethodName]); 11] = [
     ("smoothing", STRONG),
     ("log_scaling", STRONG),
     ("correction", STRONG),
     ("conservative_neumann", NAMED),
     ("support", EVERY),
     ("selection_tolerance", SELECTING),
+    ("weight", PARTICLE),
+    ("wedge", PARTICLE),
     ("ghosts", &[]),
     ("kernel", &[]),
     ("sigma", &[]),
@@ -117,6 +124,8 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         conservative_neumann: flag("conservative_neumann")?,
         support: table.get("support").map(|value| support(&value)).transpose()?,
         selection_tolerance: table.get("selection_tolerance").map(|value| tolerance(&value)).transpose()?,
+        weight: table.get("weight").map(|value| value.one_of(&WEIGHTS)).transpose()?,
+        wedge: table.get("wedge").map(|value| value.one_of(&WEDGES)).transpose()?,
     })
 }
 

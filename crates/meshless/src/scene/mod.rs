@@ -31,7 +31,8 @@ pub use method::MethodNameError;
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
-    MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SolverName,
+    MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SolverName, WedgeName,
+    WeightName,
 };
 
 use source::Source;

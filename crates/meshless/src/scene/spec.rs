@@ -225,6 +225,8 @@ pub enum MethodName {
     GfdmPositive,
     /// `gfdm-hybrid`
     GfdmHybrid,
+    /// `particle-difference`
+    ParticleDifference,
 }
 
 /// Linear solvers.
@@ -243,8 +245,26 @@ pub enum SolverName {
     Multigrid,
 }
 
+/// Weight functions of least-squares stencils.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WeightName {
+    /// `quartic`
+    Quartic,
+    /// `exponential`
+    Exponential,
+}
+
+/// How the other side of an interface continues this one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WedgeName {
+    /// `plane`
+    Plane,
+    /// `varying`
+    Varying,
+}
+
 /// Options of single methods (Kraus et al. 2022, "A meshfree point collocation method for elliptic interface
-/// problems").
+/// problems"; Yoon & Song 2021, "Interface Immersed Particle Difference Method").
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MethodOptions {
     /// Smoothing cycles of the diffusivity.
@@ -259,6 +279,10 @@ pub struct MethodOptions {
     pub support: Option<f64>,
     /// Diagonal-dominance error above which a node gets a conservative row, not negative.
     pub selection_tolerance: Option<f64>,
+    /// Weight of neighbours by their distance.
+    pub weight: Option<WeightName>,
+    /// The other side of an interface.
+    pub wedge: Option<WedgeName>,
 }
 
 /// What to write besides the report; nothing, if the scene does not say.

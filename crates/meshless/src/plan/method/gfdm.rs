@@ -49,6 +49,7 @@ pub(super) fn steps(params: &GfdmParams, survey: &Survey) -> Steps {
         stencils: params.selection != Selection::All,
         no_stencils: "every row is conservative",
         selection,
+        constrained: None,
         cells: match params.selection {
             Selection::All => 1.0,
             Selection::None => 0.0,

@@ -1,9 +1,11 @@
 //! The spatial methods as plans see them: one file for each family, one variant of [`MethodParams`] for each.
 
 mod gfdm;
+mod particle_difference;
 
 use meshless_interfaces::Method;
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
+use meshless_interfaces::particle_difference::{ParticleDifference, ParticleDifferenceParams};
 
 use super::effects::Survey;
 use crate::scene::{MethodName, Scene};
@@ -13,6 +15,8 @@ use crate::scene::{MethodName, Scene};
 pub enum MethodParams {
     /// Generalised finite differences: classical, positive, hybrid and conservative.
     Gfdm(GfdmParams),
+    /// Interface-immersed particle differences.
+    ParticleDifference(ParticleDifferenceParams),
 }
 
 /// What a method builds; decides its stages and what they are expected to cost.
@@ -24,6 +28,8 @@ pub(super) struct Steps {
     pub(super) no_stencils: &'static str,
     /// A search for the nodes that need another row than the rest.
     pub(super) selection: bool,
+    /// Stencils that interface conditions are built into; `None` for methods that have no such stencils.
+    pub(super) constrained: Option<bool>,
     /// Share of the nodes that need a Voronoi cell, about.
     pub(super) cells: f64,
     /// Cells are needed at least on the boundary, or may turn out to be.
@@ -33,13 +39,17 @@ pub(super) struct Steps {
 impl MethodParams {
     /// The parameters of the method `name` in a scene. The only place, with [`Self::build`], that knows all families.
     pub(super) fn new(name: MethodName, scene: &Scene, survey: &Survey) -> Self {
-        Self::Gfdm(gfdm::params(name, scene, survey))
+        match name {
+            MethodName::ParticleDifference => Self::ParticleDifference(particle_difference::params(scene)),
+            _ => Self::Gfdm(gfdm::params(name, scene, survey)),
+        }
     }
 
     /// The spatial method itself.
     pub fn build<const D: usize>(&self) -> Box<dyn Method<D>> {
         match self {
             Self::Gfdm(params) => Box::new(Gfdm { params: *params }),
+            Self::ParticleDifference(params) => Box::new(ParticleDifference { params: *params }),
         }
     }
 
@@ -47,6 +57,7 @@ impl MethodParams {
     pub fn order(&self) -> usize {
         match self {
             Self::Gfdm(params) => gfdm::order(params),
+            Self::ParticleDifference(params) => params.degree,
         }
     }
 
@@ -54,12 +65,14 @@ impl MethodParams {
     pub fn interface_order(&self) -> usize {
         match self {
             Self::Gfdm(_) => 1,
+            Self::ParticleDifference(_) => 2,
         }
     }
 
     pub(super) fn steps(&self, survey: &Survey) -> Steps {
         match self {
             Self::Gfdm(params) => gfdm::steps(params, survey),
+            Self::ParticleDifference(_) => particle_difference::steps(survey),
         }
     }
 }

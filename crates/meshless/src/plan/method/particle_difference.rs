@@ -1,0 +1,34 @@
+//! Interface-immersed particle differences in plans.
+
+use meshless_interfaces::particle_difference::{ParticleDifferenceParams, Wedge};
+use meshless_stencils::Weight;
+
+use super::Steps;
+use crate::plan::effects::Survey;
+use crate::scene::{Scene, WedgeName, WeightName};
+
+pub(super) fn params(scene: &Scene) -> ParticleDifferenceParams {
+    let (options, chosen) = (&scene.method.options, ParticleDifferenceParams::default());
+    ParticleDifferenceParams {
+        degree: scene.method.order.unwrap_or(chosen.degree),
+        weight: options.weight.map_or(chosen.weight, |name| match name {
+            WeightName::Quartic => Weight::Quartic,
+            WeightName::Exponential => Weight::Exponential,
+        }),
+        wedge: options.wedge.map_or(chosen.wedge, |name| match name {
+            WedgeName::Plane => Wedge::Plane,
+            WedgeName::Varying => Wedge::Varying,
+        }),
+    }
+}
+
+pub(super) fn steps(survey: &Survey) -> Steps {
+    Steps {
+        stencils: true,
+        no_stencils: "",
+        selection: false,
+        constrained: Some(survey.has_interface()),
+        cells: 0.0,
+        may_need_cells: false,
+    }
+}
