@@ -157,8 +157,8 @@ fn boundary_measure<const D: usize>(problem: &Problem<'_, D>, i: usize) -> f64 {
     problem.cloud.spacing()[i].powi(D as i32 - 1)
 }
 
-/// Collocated conditions, in the order of `cloud.boundary()`. Nodes whose stencil would reach over a prescribed jump get a
-/// conservative row instead.
+/// Collocated conditions, in the order of `cloud.boundary()`. Nodes whose stencil would reach over a prescribed jump, or
+/// is unsound, get a conservative row instead.
 fn boundary_rows<const D: usize>(
     problem: &Problem<'_, D>,
     kinds: &mut [RowKind],
@@ -173,7 +173,8 @@ fn boundary_rows<const D: usize>(
         .collect::<Result<_, _>>()?;
     for (node, row) in nodes.iter().zip(&mut rows) {
         let i = node.node as usize;
-        if row.take_if(|row| select::crosses_a_jump(problem, i, &row.neighbors)).is_some() {
+        if row.take_if(|row| !row.is_sound() || select::crosses_a_jump(problem, i, &row.neighbors)).is_some()
+        {
             kinds[i] = RowKind::Conservative;
         }
     }

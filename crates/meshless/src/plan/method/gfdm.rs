@@ -56,8 +56,7 @@ pub(super) fn steps(params: &GfdmParams, survey: &Survey) -> Steps {
             _ if survey.has_interface() => SHARE_NEAR_INTERFACES,
             _ => 0.0,
         },
-        may_need_cells: selection
-            || params.selection == Selection::All
-            || params.conservative_neumann && flux_rows,
+        // Also where conditions on the flux are collocated: unsound rows are replaced by balances.
+        may_need_cells: selection || params.selection == Selection::All || flux_rows,
     }
 }
