@@ -46,6 +46,19 @@ pub enum MethodError {
         /// Its coordinates.
         position: Vec<f64>,
     },
+    /// No interface of a region near a node of another one, where its field was to be continued.
+    #[error(
+        "no interface of region {region} near node {node} (near {position:?}), where its field is to be continued; where \
+         three regions meet, or layers are thinner than the spacing, use gfdm-hybrid"
+    )]
+    NoFoot {
+        /// The node.
+        node: usize,
+        /// Its coordinates.
+        position: Vec<f64>,
+        /// The region, by its place in the list.
+        region: u16,
+    },
     /// Parts of the problem that do not fit together, or a diffusivity or source that is no number to compute with.
     #[error("the problem is not sound: {what}")]
     InvalidProblem {

@@ -44,6 +44,7 @@
 //! ```
 
 mod adjacency;
+pub mod dcpse;
 mod diagnosis;
 mod error;
 mod field;

@@ -197,6 +197,17 @@ impl<const D: usize> Problem<'_, D> {
 }
 
 impl Condition {
+    /// The condition in the form `a u + eta du/dn = g`, as `(a, g)`; `None` for a Dirichlet condition and for a Robin
+    /// condition without flux. `eta` turns du/dn into a flux.
+    pub(crate) fn as_flux(&self, eta: f64) -> Option<(f64, f64)> {
+        match *self {
+            Self::Dirichlet(_) => None,
+            Self::Neumann(g) => Some((0.0, eta * g)),
+            Self::Flux(g) => Some((0.0, g)),
+            Self::Robin { a, b, g } => (b != 0.0).then_some((a / b, g / b)),
+        }
+    }
+
     /// Whether the condition fixes the constant of u.
     pub fn anchors(&self) -> bool {
         match *self {

@@ -50,4 +50,12 @@ pub const METHODS: &[MethodInfo] = &[
         limits: "stencils that the interface condition is built into, no further unknowns: second order up to the \
                  interface, jumps of u and of the flux; no maximum principle, not conservative",
     },
+    MethodInfo {
+        name: "immersed-interface",
+        order: "2-3 / 2",
+        dimensions: "1, 2, 3",
+        limits: "DC-PSE operators that see one region each; values beyond an interface are continued under its \
+                 conditions: second order and more up to the interface, jumps of u and of the flux; three regions must \
+                 not meet; no maximum principle, not conservative",
+    },
 ];

@@ -89,7 +89,7 @@ impl<const D: usize> LocalFit<D> {
     ) -> f64 {
         let (radius, exact) = scratch.moments_of(functional, self.monomials());
         let mut largest = 0.0_f64;
-        for (exponents, &exact) in self.monomials().exponents().iter().zip(exact) {
+        for (exponents, &exact) in self.monomials().exponents().iter().zip(exact).skip(self.first()) {
             let (mut sum, mut absolute) = (0.0, exact.abs());
             for (x, c) in offsets.iter().zip(coefficients) {
                 let term = (0..D).fold(*c, |t, k| t * (x[k] / radius).powi(i32::from(exponents[k])));

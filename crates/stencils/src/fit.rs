@@ -12,11 +12,14 @@ pub struct FitParams {
     pub degree: usize,
     /// Smallest diagonal entry of R, relative to the largest, that is taken as different from zero.
     pub rank_tolerance: f64,
+    /// The polynomial passes through the value at the centre, which is then not among the points of the support;
+    /// coefficients multiply the differences to that value.
+    pub through_centre: bool,
 }
 
 impl Default for FitParams {
     fn default() -> Self {
-        Self { degree: 2, rank_tolerance: 1e-11 }
+        Self { degree: 2, rank_tolerance: 1e-11, through_centre: false }
     }
 }
 
@@ -52,6 +55,11 @@ impl<const D: usize> LocalFit<D> {
     /// The monomials that are reproduced.
     pub fn monomials(&self) -> &Monomials<D> {
         &self.monomials
+    }
+
+    /// The first monomial that is fitted: a polynomial through the centre has no free constant.
+    pub(crate) fn first(&self) -> usize {
+        usize::from(self.params.through_centre)
     }
 
     /// Memory for supports of up to `max_points` points; larger ones work and make it grow.
@@ -114,15 +122,24 @@ impl<const D: usize> LocalFit<D> {
         edit: &dyn Fn(&mut BasisValues<'_>),
         scratch: &mut FitScratch<D>,
     ) {
-        let m = self.monomials.count();
-        scratch.qr.resize(offsets.len(), m + extra);
+        let (m, first) = (self.monomials.count(), self.first());
+        scratch.qr.resize(offsets.len(), m - first + extra);
         let inverse = 1.0 / scratch.radius;
-        scratch.qr.column_mut(0).copy_from_slice(&scratch.weights);
+        if first == 0 {
+            scratch.qr.column_mut(0).copy_from_slice(&scratch.weights);
+        }
         // Every monomial is one of lower degree, which comes before it, times a coordinate.
         for (column, &(parent, axis)) in self.monomials.parents().iter().enumerate().skip(1) {
-            scratch.qr.multiply_column(parent, column, offsets, axis, inverse);
+            if parent < first {
+                let column = scratch.qr.column_mut(column - first);
+                for ((value, weight), point) in column.iter_mut().zip(&scratch.weights).zip(offsets) {
+                    *value = weight * point[axis] * inverse;
+                }
+            } else {
+                scratch.qr.multiply_column(parent - first, column - first, offsets, axis, inverse);
+            }
         }
-        (m..m + extra).for_each(|column| scratch.qr.column_mut(column).fill(0.0));
+        (m - first..m - first + extra).for_each(|column| scratch.qr.column_mut(column).fill(0.0));
         edit(&mut BasisValues { qr: &mut scratch.qr, weights: &scratch.weights });
     }
 
@@ -173,9 +190,10 @@ impl<const D: usize> LocalFit<D> {
         scratch: &mut FitScratch<D>,
         out: &mut [f64],
     ) -> Result<(), StencilError> {
-        let (points, count) = (scratch.points(), scratch.qr.columns());
+        let (points, count) = (scratch.points(), scratch.qr.columns() + self.first());
         check_length("coefficients", out.len(), points)?;
         check_length("moments", moments.len(), count)?;
+        let moments = &moments[self.first()..];
         let remainder = scratch.qr.least_norm(moments, &mut scratch.z, out);
         out.iter_mut().zip(&scratch.weights).for_each(|(c, w)| *c *= w);
         let scale = moments.iter().fold(0.0_f64, |a, b| a.max(b.abs()));

@@ -10,6 +10,9 @@
 //! take degree 3, or degree 2 where supports are symmetric about their node. [`build_stencils`] does all points of a
 //! cloud in parallel; [`LocalFit::diagnose`] tells good stencils from bad ones.
 //!
+//! [`DcPse`] offers the operators of discretisation-corrected particle strength exchange on the same engine, and
+//! [`ConstrainedFit`] fits under linear constraints, as the conditions at an interface are.
+//!
 //! **Not for** finding supports (see `meshless-neighbors`), and not for interpolation of large data sets.
 //!
 //! # Example
@@ -33,6 +36,8 @@
 //! ```
 
 mod basis;
+mod constrained;
+mod dcpse;
 mod diagnosis;
 mod error;
 mod fit;
@@ -44,6 +49,8 @@ mod set;
 mod weight;
 
 pub use basis::BasisValues;
+pub use constrained::ConstrainedFit;
+pub use dcpse::{DcPse, DcPseScratch};
 pub use diagnosis::{SignDiagnosis, StencilDiagnosis};
 pub use error::StencilError;
 pub use fit::{FitDiagnosis, FitParams, LocalFit, REPRODUCTION_TOLERANCE};

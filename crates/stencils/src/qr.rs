@@ -156,6 +156,23 @@ impl Qr {
         remainder
     }
 
+    /// `x <- Q^T x`; the entries from the rank on are the part that the columns do not reach.
+    pub(crate) fn apply_transpose(&self, x: &mut [f64]) {
+        let rows = self.rows;
+        for k in 0..self.rank {
+            apply(&self.a[k * rows + k..(k + 1) * rows], self.tau[k], &mut x[k..rows]);
+        }
+    }
+
+    /// Solves `R (P^T x) = y` with the rows within the rank; the entries beyond the rank are zero.
+    pub(crate) fn back_substitute(&self, y: &[f64], x: &mut [f64]) {
+        x.fill(0.0);
+        for k in (0..self.rank).rev() {
+            let later = (k + 1..self.rank).map(|j| self.a[j * self.rows + k] * x[self.pivots[j]]);
+            x[self.pivots[k]] = (y[k] - later.sum::<f64>()) / self.diagonal[k];
+        }
+    }
+
     /// Writes the projection of the unit vector `entry` onto the complement of the columns to `y`.
     ///
     /// It is made of what `Q^T e` has beyond the rank, not as a difference that could cancel.

@@ -34,10 +34,19 @@ pub fn generate<const D: usize>(
         }
         (layout, Spacing::Uniform(s)) => {
             sample(&mut sampler, true, &mut random)?;
-            lattice::fill(&mut sampler, *s, (layout == Layout::Jittered).then_some(&mut random))?;
+            let jitter = match layout {
+                Layout::Jittered => Some((lattice::JITTER, &mut random)),
+                Layout::Scattered => Some((lattice::SCATTER, &mut random)),
+                _ => None,
+            };
+            lattice::fill(&mut sampler, *s, jitter)?;
         }
         (layout, Spacing::Graded(_)) => {
-            let layout = if layout == Layout::Grid { "grid" } else { "jittered" };
+            let layout = match layout {
+                Layout::Grid => "grid",
+                Layout::Scattered => "scattered",
+                _ => "jittered",
+            };
             return Err(GeometryError::GradedLattice { layout });
         }
     }

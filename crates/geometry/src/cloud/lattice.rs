@@ -12,12 +12,15 @@ const CURVED_CLEARANCE: f64 = 0.5;
 /// How far jittered nodes are moved along each axis, relative to the lattice's own spacing.
 pub(super) const JITTER: f64 = 0.25;
 
+/// The same for scattered nodes.
+pub(super) const SCATTER: f64 = 0.5;
+
 /// Adds the nodes of a lattice that divides the bounds evenly, as nearly by the spacing as possible: first those on
 /// the planes of an outer box, then those inside.
 pub(super) fn fill<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     spacing: f64,
-    jitter: Option<&mut Random>,
+    jitter: Option<(f64, &mut Random)>,
 ) -> Result<(), GeometryError> {
     let bounds = sampler.domain.bounds();
     let curved = sampler.nodes.len();
@@ -46,9 +49,9 @@ pub(super) fn fill<const D: usize>(
         if on_face || !clear(sampler, &x, spacing, CURVED_CLEARANCE, curved) {
             return Ok(());
         }
-        if let Some(random) = jitter.as_deref_mut() {
+        if let Some((amplitude, random)) = &mut jitter {
             let y = std::array::from_fn(|i| {
-                x[i] + JITTER * random.symmetric() * bounds.lengths()[i] / parts[i] as f64
+                x[i] + *amplitude * random.symmetric() * bounds.lengths()[i] / parts[i] as f64
             });
             // Nodes that would come too near to a curved surface stay where they are.
             if clear(sampler, &y, spacing, CLEARANCE, curved) {

@@ -10,6 +10,9 @@ pub enum Layout {
     Grid,
     /// A grid whose interior nodes are moved at random by up to a quarter of the spacing along each axis.
     Jittered,
+    /// The same by up to half the spacing, so that nodes may come arbitrarily near to each other: the irregular clouds of
+    /// the literature on particle methods, to see what a method bears.
+    Scattered,
     /// Poisson-disk: random, with a smallest distance and without holes.
     Irregular,
 }

@@ -4,7 +4,6 @@ use meshless_stencils::{Functional, SignDiagnosis, StencilError, Weight};
 
 use crate::gfdm::strong::add_correction;
 use crate::local::{NodeFit, enlarged_support};
-use crate::problem::Condition;
 use crate::{MethodError, Problem};
 
 /// Polynomial degree of the normal derivative.
@@ -32,18 +31,6 @@ impl BoundaryRow {
     }
 }
 
-/// A condition on the flux in the form `a u + eta du/dn = g`.
-///
-/// `eta` turns du/dn into a flux; the caller never passes a Dirichlet condition.
-pub(crate) fn as_flux(condition: &Condition, eta: f64) -> Option<(f64, f64)> {
-    match *condition {
-        Condition::Dirichlet(_) => None,
-        Condition::Neumann(g) => Some((0.0, eta * g)),
-        Condition::Flux(g) => Some((0.0, g)),
-        Condition::Robin { a, b, g } => (b != 0.0).then_some((a / b, g / b)),
-    }
-}
-
 /// Collocates the conditions of boundary node `index` (its place in `cloud.boundary()`).
 ///
 /// At an edge or a corner the conditions of all faces are added: with normals n_f that is the derivative along
@@ -57,7 +44,8 @@ pub(super) fn collocate<const D: usize>(
     let position = || problem.cloud.points()[i].to_vec();
     let (mut direction, mut row_sum, mut rhs) = ([0.0; D], 0.0, 0.0);
     for (touch, condition) in node.touches.iter().zip(&problem.conditions[index]) {
-        let (a, g) = as_flux(condition, problem.eta[i])
+        let (a, g) = condition
+            .as_flux(problem.eta[i])
             .ok_or_else(|| MethodError::RobinWithoutFlux { node: i, position: position() })?;
         row_sum += a;
         rhs += g;

@@ -7,7 +7,6 @@ use meshless_cells::{Cell, CellError, CellFace, CellScratch, Container, Cut, Fac
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
-use crate::gfdm::boundary::as_flux;
 use crate::problem::Condition;
 use crate::{MethodError, Problem};
 
@@ -199,7 +198,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         };
         let to_flux = |condition: &Condition| {
             let without_flux = || MethodError::RobinWithoutFlux { node: i, position: x.to_vec() };
-            as_flux(condition, eta).ok_or_else(without_flux)
+            condition.as_flux(eta).ok_or_else(without_flux)
         };
         let height = (0..D).map(|k| face.normal[k] * (face.centroid[k] - x[k])).sum::<f64>();
         let foot = std::array::from_fn(|k| x[k] + height * face.normal[k]);

@@ -18,7 +18,6 @@ use rayon::prelude::*;
 use crate::method::{Counts, Discretization, Method, RowKind};
 use crate::{MethodError, Problem};
 use boundary::BoundaryRow;
-pub(crate) use boundary::as_flux;
 use conservative::{CellBalance, CellRow};
 pub use params::{GfdmParams, Selection, StrongParams};
 use strong::StrongRows;

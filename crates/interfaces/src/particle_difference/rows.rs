@@ -2,7 +2,7 @@
 
 use meshless_stencils::Functional;
 
-use crate::gfdm::{add_correction, as_flux};
+use crate::gfdm::add_correction;
 use crate::local::{NodeFit, NodeScratch, enlarged_support};
 use crate::method::RowKind;
 use crate::particle_difference::ParticleDifferenceParams;
@@ -100,7 +100,7 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         let eta = self.problem.eta[i];
         let (mut direction, mut row_sum, mut rhs) = ([0.0; D], 0.0, 0.0);
         for (touch, condition) in node.touches.iter().zip(&self.problem.conditions[index]) {
-            let (a, g) = as_flux(condition, eta).ok_or_else(|| MethodError::RobinWithoutFlux {
+            let (a, g) = condition.as_flux(eta).ok_or_else(|| MethodError::RobinWithoutFlux {
                 node: i,
                 position: self.problem.cloud.points()[i].to_vec(),
             })?;

@@ -64,6 +64,7 @@ pub(crate) fn layout(scene: &Scene) -> Layout {
     match scene.points.layout {
         LayoutName::Grid => Layout::Grid,
         LayoutName::Jittered => Layout::Jittered,
+        LayoutName::Scattered => Layout::Scattered,
         LayoutName::Irregular => Layout::Irregular,
     }
 }

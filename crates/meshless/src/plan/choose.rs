@@ -30,7 +30,9 @@ pub(super) fn method(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error
         name => (name, "asked for by the scene".to_owned()),
     };
     let params = MethodParams::new(name, scene, survey);
-    let support = scene.method.options.support.unwrap_or(SUPPORT[scene.dimension - 1]);
+    let dimension = scene.dimension;
+    let wanted = params.support(dimension).unwrap_or(SUPPORT[dimension - 1]);
+    let support = scene.method.options.support.unwrap_or(wanted);
     Ok(MethodPlan { name, why, support, params })
 }
 

@@ -31,9 +31,10 @@ pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
 }
 
 pub(super) fn points(root: &Table<'_>) -> Result<PointsSpec, SceneError> {
-    const LAYOUTS: [(&str, LayoutName); 3] = [
+    const LAYOUTS: [(&str, LayoutName); 4] = [
         ("grid", LayoutName::Grid),
         ("jittered", LayoutName::Jittered),
+        ("scattered", LayoutName::Scattered),
         ("irregular", LayoutName::Irregular),
     ];
     let table = root.require("points")?.table()?;

@@ -13,18 +13,18 @@ const ORDERS: [u64; 2] = [2, 8];
 const MAX_SMOOTHING: u64 = 100;
 
 /// Methods by name.
-const METHODS: [(&str, MethodName); 6] = [
+const METHODS: [(&str, MethodName); 7] = [
     ("auto", MethodName::Auto),
     ("gfdm-classical", MethodName::GfdmClassical),
     ("gfdm-conservative", MethodName::GfdmConservative),
     ("gfdm-positive", MethodName::GfdmPositive),
     ("gfdm-hybrid", MethodName::GfdmHybrid),
     ("particle-difference", MethodName::ParticleDifference),
+    ("immersed-interface", MethodName::ImmersedInterface),
 ];
 
 /// Methods that are recognised and not built.
-const FUTURE_METHODS: [&str; 5] =
-    ["particle-difference-extended", "immersed-interface", "surface-reaction", "sharp", "free-space"];
+const FUTURE_METHODS: [&str; 4] = ["particle-difference-extended", "surface-reaction", "sharp", "free-space"];
 
 /// Solvers by name.
 const SOLVERS: [(&str, SolverName); 5] = [
@@ -61,6 +61,7 @@ const EVERY: &[MethodName] = &[
     MethodName::GfdmPositive,
     MethodName::GfdmHybrid,
     MethodName::ParticleDifference,
+    MethodName::ImmersedInterface,
 ];
 /// Methods whose stencils know interfaces.
 const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];

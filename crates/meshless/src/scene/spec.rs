@@ -116,6 +116,8 @@ pub enum LayoutName {
     Grid,
     /// `jittered`
     Jittered,
+    /// `scattered`
+    Scattered,
     /// `irregular`
     Irregular,
 }
@@ -227,6 +229,8 @@ pub enum MethodName {
     GfdmHybrid,
     /// `particle-difference`
     ParticleDifference,
+    /// `immersed-interface`
+    ImmersedInterface,
 }
 
 /// Linear solvers.

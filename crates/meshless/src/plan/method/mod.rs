@@ -1,9 +1,11 @@
 //! The spatial methods as plans see them: one file for each family, one variant of [`MethodParams`] for each.
 
+mod dcpse;
 mod gfdm;
 mod particle_difference;
 
 use meshless_interfaces::Method;
+use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams};
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
 use meshless_interfaces::particle_difference::{ParticleDifference, ParticleDifferenceParams};
 
@@ -17,6 +19,8 @@ pub enum MethodParams {
     Gfdm(GfdmParams),
     /// Interface-immersed particle differences.
     ParticleDifference(ParticleDifferenceParams),
+    /// DC-PSE operators with immersed interfaces.
+    ImmersedInterface(ImmersedParams),
 }
 
 /// What a method builds; decides its stages and what they are expected to cost.
@@ -41,6 +45,7 @@ impl MethodParams {
     pub(super) fn new(name: MethodName, scene: &Scene, survey: &Survey) -> Self {
         match name {
             MethodName::ParticleDifference => Self::ParticleDifference(particle_difference::params(scene)),
+            MethodName::ImmersedInterface => Self::ImmersedInterface(dcpse::immersed(scene)),
             _ => Self::Gfdm(gfdm::params(name, scene, survey)),
         }
     }
@@ -50,6 +55,7 @@ impl MethodParams {
         match self {
             Self::Gfdm(params) => Box::new(Gfdm { params: *params }),
             Self::ParticleDifference(params) => Box::new(ParticleDifference { params: *params }),
+            Self::ImmersedInterface(params) => Box::new(ImmersedInterface { params: *params }),
         }
     }
 
@@ -58,6 +64,7 @@ impl MethodParams {
         match self {
             Self::Gfdm(params) => gfdm::order(params),
             Self::ParticleDifference(params) => params.degree,
+            Self::ImmersedInterface(params) => params.order,
         }
     }
 
@@ -65,7 +72,7 @@ impl MethodParams {
     pub fn interface_order(&self) -> usize {
         match self {
             Self::Gfdm(_) => 1,
-            Self::ParticleDifference(_) => 2,
+            Self::ParticleDifference(_) | Self::ImmersedInterface(_) => 2,
         }
     }
 
@@ -73,6 +80,15 @@ impl MethodParams {
         match self {
             Self::Gfdm(params) => gfdm::steps(params, survey),
             Self::ParticleDifference(_) => particle_difference::steps(survey),
+            Self::ImmersedInterface(_) => dcpse::steps(survey),
+        }
+    }
+
+    /// Interaction radius in units of the spacing that the method wants; `None` for the common one.
+    pub(super) fn support(&self, dimension: usize) -> Option<f64> {
+        match self {
+            Self::ImmersedInterface(params) => Some(dcpse::support(dimension, params.order)),
+            Self::Gfdm(_) | Self::ParticleDifference(_) => None,
         }
     }
 }

@@ -1,0 +1,147 @@
+//! Which ghosts there are, and where to find them.
+
+use rayon::prelude::*;
+
+use super::constrained::{ConstrainedGhosts, Ghost, GhostScratch};
+use super::foot::foot;
+use super::operators::Operators;
+use super::params::Ghosts;
+use crate::method::RowKind;
+use crate::{MethodError, Problem};
+
+/// Whether node j may take part in the operator at node i: a node of the same region beyond another region may not, and
+/// neither may its value be continued, since the nearest interface there is another one.
+pub(super) fn sees<const D: usize>(problem: &Problem<'_, D>, i: usize, j: usize) -> bool {
+    let labels = problem.labels;
+    if labels[i] != labels[j] || problem.materials.len() == 1 {
+        return true;
+    }
+    // Only near another region can there be one in between.
+    if problem.supports.lists.of(i).iter().all(|&k| labels[k as usize] == labels[i]) {
+        return true;
+    }
+    let (a, b) = (&problem.cloud.points()[i], &problem.cloud.points()[j]);
+    let middle: [f64; D] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+    problem.regions.label(&middle, problem.cloud.spacing()[i]) == labels[i]
+}
+
+/// All ghosts of a discretisation.
+pub(super) struct GhostTable {
+    /// Node and region whose field is continued there, in order.
+    keys: Vec<(u32, u16)>,
+    ghosts: Vec<Ghost>,
+    /// Boundary nodes whose value follows from a condition on the flux, in order.
+    boundary: Vec<(u32, Ghost)>,
+    /// Nodes whose row uses a ghost.
+    rows: Vec<u32>,
+}
+
+impl GhostTable {
+    /// Makes all ghosts that the operators ask for, in parallel.
+    pub(super) fn build<const D: usize>(
+        problem: &Problem<'_, D>,
+        kind: &Ghosts,
+        kinds: &[RowKind],
+        operators: &Operators,
+    ) -> Result<Self, MethodError> {
+        let (keys, rows) = keys(problem, kinds, operators);
+        let Ghosts::Constrained { degree } = *kind;
+        let maker = ConstrainedGhosts::new(problem, degree)?;
+        let ghosts: Vec<Result<Ghost, MethodError>> = keys
+            .par_iter()
+            .map_init(GhostScratch::default, |scratch, &(q, own)| {
+                across(problem, &maker, q as usize, own, scratch)
+            })
+            .collect();
+        let nodes = problem.cloud.boundary();
+        let boundary: Vec<Result<(u32, Ghost), MethodError>> = (0..nodes.len())
+            .into_par_iter()
+            .filter(|&index| kinds[nodes[index].node as usize] == RowKind::StrongBoundary)
+            .map_init(GhostScratch::default, |scratch, index| {
+                Ok((nodes[index].node, on_boundary(problem, &maker, index, scratch)?))
+            })
+            .collect();
+        // Which node an error names must not depend on which thread was faster.
+        let ghosts = ghosts.into_iter().collect::<Result<_, _>>()?;
+        let boundary = boundary.into_iter().collect::<Result<_, _>>()?;
+        Ok(Self { keys, ghosts, boundary, rows })
+    }
+
+    /// The field of region `own` at node q, which is of another region.
+    pub(super) fn across(&self, q: u32, own: u16) -> Option<&Ghost> {
+        self.keys.binary_search(&(q, own)).ok().map(|place| &self.ghosts[place])
+    }
+
+    /// The value at a boundary node.
+    pub(super) fn on_boundary(&self, b: usize) -> Option<&Ghost> {
+        self.boundary.binary_search_by_key(&(b as u32), |(node, _)| *node).ok().map(|k| &self.boundary[k].1)
+    }
+
+    /// Number of ghosts.
+    pub(super) fn len(&self) -> usize {
+        self.ghosts.len()
+    }
+
+    /// Nodes whose row uses a ghost.
+    pub(super) fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+}
+
+/// The ghosts that are needed, and the nodes whose rows need one.
+fn keys<const D: usize>(
+    problem: &Problem<'_, D>,
+    kinds: &[RowKind],
+    operators: &Operators,
+) -> (Vec<(u32, u16)>, Vec<u32>) {
+    let labels = problem.labels;
+    let (mut keys, mut rows) = (Vec::new(), Vec::new());
+    for i in (0..kinds.len()).filter(|&i| kinds[i] == RowKind::Strong) {
+        let before = keys.len();
+        let (neighbors, coefficients) = operators.row(problem, i);
+        let others = neighbors
+            .iter()
+            .zip(coefficients)
+            .filter(|(j, c)| **c != 0.0 && labels[**j as usize] != labels[i]);
+        keys.extend(others.map(|(&j, _)| (j, labels[i])));
+        if keys.len() > before {
+            rows.push(i as u32);
+        }
+    }
+    keys.sort_unstable();
+    keys.dedup();
+    (keys, rows)
+}
+
+fn across<const D: usize>(
+    problem: &Problem<'_, D>,
+    maker: &ConstrainedGhosts<'_, D>,
+    q: usize,
+    own: u16,
+    scratch: &mut GhostScratch,
+) -> Result<Ghost, MethodError> {
+    let x = &problem.cloud.points()[q];
+    let Some((foot, other)) = foot(problem, q, own) else {
+        return Err(MethodError::NoFoot { node: q, position: x.to_vec(), region: own });
+    };
+    maker.across(x, &foot, [own, other], scratch).map_err(|source| MethodError::stencil(q, x, source))
+}
+
+fn on_boundary<const D: usize>(
+    problem: &Problem<'_, D>,
+    maker: &ConstrainedGhosts<'_, D>,
+    index: usize,
+    scratch: &mut GhostScratch,
+) -> Result<Ghost, MethodError> {
+    let node = &problem.cloud.boundary()[index];
+    let b = node.node as usize;
+    let x = &problem.cloud.points()[b];
+    let mut conditions = Vec::with_capacity(node.touches.len());
+    for (touch, condition) in node.touches.iter().zip(&problem.conditions[index]) {
+        let (a, g) = condition
+            .as_flux(problem.eta[b])
+            .ok_or_else(|| MethodError::RobinWithoutFlux { node: b, position: x.to_vec() })?;
+        conditions.push((touch.normal, a, g));
+    }
+    maker.on_boundary(b, &conditions, scratch).map_err(|source| MethodError::stencil(b, x, source))
+}

@@ -1,0 +1,137 @@
+//! DC-PSE operators of `div(eta grad u)` at all nodes, each with the diffusivity of its own region.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit};
+
+use super::foot;
+use crate::local::enlarged_support;
+use crate::support_values::SupportValues;
+use crate::{MethodError, Problem};
+
+/// Width of the kernel relative to the radius of the support.
+const KERNEL_WIDTH: f64 = 0.5;
+
+/// Coefficients of the differences `u_j - u_i`, at every node that is asked for.
+pub(super) struct Operators {
+    values: SupportValues,
+    enlarged: BTreeMap<u32, (Vec<u32>, Vec<f64>)>,
+}
+
+impl Operators {
+    /// Operators of a degree at the nodes for which `wanted` holds. A coefficient is zero where `sees(i, j)` does not
+    /// hold: such a neighbour takes no part.
+    pub(super) fn compute<const D: usize>(
+        problem: &Problem<'_, D>,
+        degree: usize,
+        wanted: impl Fn(usize) -> bool + Sync,
+        sees: impl Fn(usize, usize) -> bool + Sync,
+    ) -> Result<Self, MethodError> {
+        let fit = LocalFit::<D>::new(FitParams { degree, through_centre: true, ..FitParams::default() });
+        let operator = Operator { problem, fit, sees };
+        let enlarged = Mutex::new(BTreeMap::new());
+        let values = SupportValues::compute(
+            problem.supports.lists,
+            || operator.scratch(),
+            |scratch, i, out| {
+                if !wanted(i) || operator.row(i, problem.supports.lists.of(i), scratch, out).is_ok() {
+                    return Ok(());
+                }
+                out.fill(0.0);
+                let neighbors = enlarged_support(problem, i);
+                let mut row = vec![0.0; neighbors.len()];
+                operator.row(i, &neighbors, scratch, &mut row)?;
+                enlarged
+                    .lock()
+                    .unwrap_or_else(std::sync::PoisonError::into_inner)
+                    .insert(i as u32, (neighbors, row));
+                Ok::<(), MethodError>(())
+            },
+        )?;
+        let enlarged = enlarged.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        Ok(Self { values, enlarged })
+    }
+
+    /// Neighbours and coefficients of node i.
+    pub(super) fn row<'a, const D: usize>(
+        &'a self,
+        problem: &Problem<'a, D>,
+        i: usize,
+    ) -> (&'a [u32], &'a [f64]) {
+        match self.enlarged.get(&(i as u32)) {
+            Some((neighbors, row)) => (neighbors, row),
+            None => (problem.supports.lists.of(i), self.values.of(i)),
+        }
+    }
+
+    /// Operators that needed a larger support.
+    pub(super) fn enlarged(&self) -> usize {
+        self.enlarged.len()
+    }
+}
+
+struct Operator<'a, const D: usize, S> {
+    problem: &'a Problem<'a, D>,
+    fit: LocalFit<D>,
+    sees: S,
+}
+
+/// Memory of one thread.
+struct Scratch<const D: usize> {
+    fit: FitScratch<D>,
+    places: Vec<usize>,
+    offsets: Vec<[f64; D]>,
+    weights: Vec<f64>,
+    coefficients: Vec<f64>,
+}
+
+impl<const D: usize, S: Fn(usize, usize) -> bool + Sync> Operator<'_, D, S> {
+    fn scratch(&self) -> Scratch<D> {
+        let most = self.problem.supports.lists.max_count();
+        Scratch {
+            fit: self.fit.scratch(most),
+            places: Vec::with_capacity(most),
+            offsets: Vec::with_capacity(most),
+            weights: Vec::with_capacity(most),
+            coefficients: Vec::with_capacity(most),
+        }
+    }
+
+    fn row(
+        &self,
+        i: usize,
+        neighbors: &[u32],
+        scratch: &mut Scratch<D>,
+        out: &mut [f64],
+    ) -> Result<(), MethodError> {
+        let points = self.problem.cloud.points();
+        let Scratch { fit, places, offsets, weights, coefficients } = scratch;
+        places.clear();
+        offsets.clear();
+        weights.clear();
+        places.extend((0..neighbors.len()).filter(|&k| (self.sees)(i, neighbors[k] as usize)));
+        let width = KERNEL_WIDTH * self.problem.supports.radius[i];
+        let mut reach = 0.0_f64;
+        for &place in places.iter() {
+            let x = &points[neighbors[place] as usize];
+            let offset: [f64; D] = std::array::from_fn(|k| x[k] - points[i][k]);
+            let squared = offset.iter().map(|c| c * c).sum::<f64>();
+            offsets.push(offset);
+            weights.push((-0.5 * squared / (width * width)).exp());
+            reach = reach.max(squared.sqrt());
+        }
+        let reach = if reach > 0.0 { reach } else { width };
+        let material = &self.problem.materials[self.problem.labels[i] as usize];
+        let eta = self.problem.eta[i];
+        let gradient = foot::gradient(&material.diffusivity, &points[i], self.problem.cloud.spacing()[i]);
+        coefficients.clear();
+        coefficients.resize(places.len(), 0.0);
+        self.fit
+            .factor(offsets, weights, reach, fit)
+            .and_then(|_| self.fit.coefficients(&Functional::Diffusion { eta, gradient }, fit, coefficients))
+            .map_err(|source| MethodError::stencil(i, &points[i], source))?;
+        places.iter().zip(coefficients).for_each(|(&place, c)| out[place] = *c);
+        Ok(())
+    }
+}
