@@ -43,7 +43,7 @@ impl<const D: usize> DcPse<D> {
 
     fn new(functional: Functional<D>, order: usize) -> Self {
         let degree = (functional.order() + order.max(1)).saturating_sub(1);
-        let even = functional.order() % 2 == 0;
+        let even = functional.order().is_multiple_of(2);
         let fit = LocalFit::new(FitParams { degree, through_centre: even, ..FitParams::default() });
         Self { functional, fit, even }
     }
