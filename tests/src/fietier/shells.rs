@@ -15,11 +15,11 @@ pub fn shells(spacing: f64, particles: Particles) -> String {
             "[[regions]]\nname = \"{name}\"\n{shape}diffusivity = \"{diffusivity}\"\nexact = \"{a}/{radius} + {b}\"\n\n"
         )
     };
-    format!(
-        "title = \"Three shells\"\ndimension = 3\n\n\
-         [domain]\nsphere = {{ center = [0.0, 0.0, 0.0], radius = 80.0 }}\n\n\
-         [[holes]]\nname = \"electrode\"\nsphere = {{ center = [0.0, 0.0, 0.0], radius = 16.0 }}\n\n"
-    ) + &points(spacing, particles)
+    "title = \"Three shells\"\ndimension = 3\n\n\
+         [domain]\nsphere = { center = [0.0, 0.0, 0.0], radius = 80.0 }\n\n\
+         [[holes]]\nname = \"electrode\"\nsphere = { center = [0.0, 0.0, 0.0], radius = 16.0 }\n\n"
+        .to_owned()
+        + &points(spacing, particles)
         + &shell("inner", Some(32.0), "1", "20480", "3720")
         + &shell("middle", Some(56.0), "8/49", "125440", "440")
         + &shell("outer", None, "4/75", "384000", "(-29240/7)")
