@@ -66,6 +66,21 @@ impl<const D: usize> Field<D> {
         }
     }
 
+    /// The gradient at one point: in closed form where there is one, else by central differences of this step.
+    pub fn gradient(&self, point: &[f64; D], step: f64) -> [f64; D] {
+        let Self::Function(f) = self else { return [0.0; D] };
+        f.gradient(point).unwrap_or_else(|| {
+            std::array::from_fn(|k| {
+                let [before, after] = [-step, step].map(|t| {
+                    let mut x = *point;
+                    x[k] += t;
+                    self.at(&x)
+                });
+                (after - before) / (2.0 * step)
+            })
+        })
+    }
+
     /// The value if it is the same everywhere.
     pub fn as_constant(&self) -> Option<f64> {
         match self {

@@ -104,6 +104,9 @@ impl<'a, const D: usize> ConstrainedFit<'a, D> {
             scratch.offsets.push(frame.turn(&std::array::from_fn(|k| points[j][k] - origin[k])));
             scratch.radius = scratch.radius.max(distance);
         }
+        for across in &scratch.sides.across {
+            scratch.weights[across.place + 1] *= scratch.sides.legs[across.leg].weight(&self.params);
+        }
         self.slopes(scratch).map_err(|source| MethodError::stencil(i, x, source))?;
         let ConstrainedScratch { fit, offsets, weights, slopes, radius, .. } = scratch;
         let edit = |basis: &mut meshless_stencils::BasisValues<'_>| {
@@ -132,6 +135,7 @@ impl<'a, const D: usize> ConstrainedFit<'a, D> {
         for across in &sides.across {
             let leg = &sides.legs[across.leg];
             let normal = frame.turn(&leg.foot.at.normal);
+            let bend = frame.turn(&leg.bend.by_gradient);
             if current != across.leg {
                 current = across.leg;
                 let at = frame.turn(&std::array::from_fn(|k| leg.foot.at.point[k] - origin[k]));
@@ -149,10 +153,12 @@ impl<'a, const D: usize> ConstrainedFit<'a, D> {
                             tangential * slopes.mixed[k][function] + turned[k] * slopes.first[k][function];
                     }
                 }
-                let value = factor * slope;
+                let bend: f64 = (0..D).map(|k| bend[k] * slopes.first[k][function]).sum();
+                let value = factor * slope + across.bend * bend;
                 if value != 0.0 {
                     slopes.added.push((function, across.place + 1, value));
-                    slopes.scales[function] = slopes.scales[function].max(value.abs());
+                    let weighted = value.abs() * leg.weight(&self.params);
+                    slopes.scales[function] = slopes.scales[function].max(weighted);
                 }
             }
         }

@@ -8,6 +8,7 @@
 mod feet;
 mod fit;
 mod frame;
+mod leg;
 mod params;
 mod rows;
 mod wedge;

@@ -5,12 +5,15 @@ use meshless_stencils::Weight;
 /// How the other side of an interface continues the polynomial of a node's own side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wedge {
-    /// By one slope: the interface is the tangent plane at the foot of the node, and the slope jumps by what the
+    /// As in the paper, by one slope: the interface is the tangent plane at the foot of the node, and the slope jumps by what the
     /// condition says at the foot (Yoon & Song, (26) to (35)).
     Plane,
     /// By a slope that varies along the interface to first order, over the distance from the interface itself: exact
     /// for all piecewise quadratic solutions whose second normal derivative does not jump.
     Varying,
+    /// As before, and with the second derivative across the interface that the equation on both sides gives: exact for
+    /// all piecewise quadratic solutions.
+    Quadratic,
 }
 
 /// Parameters of the interface-immersed particle difference method.
@@ -22,10 +25,19 @@ pub struct ParticleDifferenceParams {
     pub weight: Weight,
     /// The other side of an interface.
     pub wedge: Wedge,
+    /// Values beyond the stiffer side count less in a fit, by the ratio of the diffusivities: in units of the flux.
+    pub flux_weights: bool,
 }
 
 impl Default for ParticleDifferenceParams {
     fn default() -> Self {
-        Self { degree: 2, weight: Weight::Quartic, wedge: Wedge::Plane }
+        Self { degree: 2, weight: Weight::Quartic, wedge: Wedge::Quadratic, flux_weights: true }
+    }
+}
+
+impl ParticleDifferenceParams {
+    /// The method of the paper.
+    pub fn paper() -> Self {
+        Self { wedge: Wedge::Plane, flux_weights: false, ..Self::default() }
     }
 }

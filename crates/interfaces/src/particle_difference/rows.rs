@@ -8,11 +8,8 @@ use crate::method::RowKind;
 use crate::particle_difference::ParticleDifferenceParams;
 use crate::particle_difference::feet::Feet;
 use crate::particle_difference::fit::{ConstrainedFit, ConstrainedScratch};
+use crate::particle_difference::leg::GRADIENT_STEP;
 use crate::{MethodError, Problem};
-
-/// Step of the difference quotient where the gradient of a diffusivity is not given, over the spacing: its error is
-/// about 1e-8 of the variation of the diffusivity over a spacing.
-const GRADIENT_STEP: f64 = 1e-4;
 
 /// A row `sum_j c_j (u_j - u_i) + r u_i = b`.
 #[derive(Debug, Clone)]
@@ -205,21 +202,8 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
     pub(super) fn diffusion(&self, i: usize) -> Functional<D> {
         let problem = self.problem;
         let field = &problem.materials[problem.labels[i] as usize].diffusivity;
-        let x = &problem.cloud.points()[i];
-        let gradient = match field {
-            crate::Field::Constant(_) => [0.0; D],
-            crate::Field::Function(f) => f.gradient(x).unwrap_or_else(|| {
-                let step = GRADIENT_STEP * problem.cloud.spacing()[i];
-                std::array::from_fn(|k| {
-                    let [before, after] = [-step, step].map(|t| {
-                        let mut at = *x;
-                        at[k] += t;
-                        field.at(&at)
-                    });
-                    (after - before) / (2.0 * step)
-                })
-            }),
-        };
+        let step = GRADIENT_STEP * problem.cloud.spacing()[i];
+        let gradient = field.gradient(&problem.cloud.points()[i], step);
         Functional::Diffusion { eta: problem.eta[i], gradient }
     }
 }

@@ -1,25 +1,14 @@
 //! The support of a node near an interface: who is on which side, and what the condition says.
 
-use crate::particle_difference::feet::{Feet, Foot, may_jump};
-use crate::particle_difference::{Wedge, frame::Frame};
-use crate::problem::InterfaceJump;
+use crate::particle_difference::Wedge;
+use crate::particle_difference::feet::{Feet, may_jump};
+use crate::particle_difference::frame::Frame;
+use crate::particle_difference::leg::Leg;
 use crate::{MethodError, Problem};
 
 /// Cosine between the normal at the foot of a neighbour and that at the foot of the node below which the neighbour is
 /// taken to be at another leg of a corner, where a slope that varies smoothly along the interface has no meaning.
 const SAME_LEG: f64 = 0.8;
-
-/// An interface within the support of a node, with the condition across it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Leg<'a, const D: usize> {
-    pub(super) foot: Foot<D>,
-    /// Diffusivity on this side over that beyond, at the foot.
-    pub(super) ratio: f64,
-    /// Diffusivity beyond, at the foot.
-    eta_beyond: f64,
-    /// What is prescribed, and the sign of its value from this side.
-    jump: Option<(&'a InterfaceJump<D>, f64)>,
-}
 
 /// A neighbour beyond an interface.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +21,8 @@ pub(super) struct Across<const D: usize> {
     pub(super) distance: f64,
     /// Its foot and the normal there, from the foot of the node and less the normal there.
     pub(super) along: Option<([f64; D], [f64; D])>,
+    /// Half the square of the distance, where the second derivative is continued, too.
+    pub(super) bend: f64,
 }
 
 /// The support of a node near an interface.
@@ -58,7 +49,7 @@ impl<'a, const D: usize> Sides<'a, D> {
     ) -> Result<(), MethodError> {
         self.clear();
         for foot in feet.of(i) {
-            self.legs.push(Leg::new(problem, problem.labels[i], *foot)?);
+            self.legs.push(Leg::new(problem, i, *foot, wedge)?);
         }
         for &j in neighbors {
             let label = problem.labels[j as usize];
@@ -89,38 +80,36 @@ impl<'a, const D: usize> Sides<'a, D> {
         leg: usize,
     ) {
         let place = self.kept.len();
-        let Leg { foot, eta_beyond, jump, .. } = self.legs[leg];
+        let leg_seen = &self.legs[leg];
+        let foot = &leg_seen.foot.at;
         let x = &problem.cloud.points()[j as usize];
         let own = feet.towards(j as usize, problem.labels[i]);
-        let plane = (0..D).map(|k| (x[k] - foot.at.point[k]) * foot.at.normal[k]).sum::<f64>();
-        let (distance, at, along) = match (wedge, own) {
-            (Wedge::Varying, Some(own)) => {
-                let normal = own.at.normal.map(|n| -n);
-                let cosine: f64 = (0..D).map(|k| normal[k] * foot.at.normal[k]).sum();
-                let offset = std::array::from_fn(|k| own.at.point[k] - foot.at.point[k]);
-                let turned = std::array::from_fn(|k| normal[k] - foot.at.normal[k]);
-                if cosine > SAME_LEG {
-                    (own.at.distance.abs(), own.at.point, Some((offset, turned)))
-                } else {
-                    (plane, foot.at.point, None)
-                }
+        let plane = (0..D).map(|k| (x[k] - foot.point[k]) * foot.normal[k]).sum::<f64>();
+        let same_leg = own.filter(|own| {
+            let parallel = -(0..D).map(|k| own.at.normal[k] * foot.normal[k]).sum::<f64>();
+            let across = (0..D).map(|k| (x[k] - own.at.point[k]) * own.at.normal[k]).sum::<f64>();
+            // At a foot in a corner the line to the node is not normal to a leg.
+            parallel > SAME_LEG && across.abs() >= SAME_LEG * own.at.distance.abs()
+        });
+        let (distance, along, flux) = match (wedge, same_leg) {
+            (Wedge::Plane, _) => (plane, None, leg_seen.flux_at_foot()),
+            (_, Some(own)) => {
+                let offset = std::array::from_fn(|k| own.at.point[k] - foot.point[k]);
+                let turned = std::array::from_fn(|k| -own.at.normal[k] - foot.normal[k]);
+                (own.at.distance.abs(), Some((offset, turned)), leg_seen.flux_at(&own.at.point))
             }
-            _ => (plane, foot.at.point, None),
+            (_, None) => {
+                let offset = std::array::from_fn(|k| x[k] - foot.point[k] - plane * foot.normal[k]);
+                (plane, Some((offset, [0.0; D])), leg_seen.flux_beside(problem, i, &offset))
+            }
         };
-        let mut shift = 0.0;
-        if let Some((jump, sign)) = jump {
-            if let Some(flux) = &jump.flux {
-                shift += distance * flux.at(&at) / eta_beyond;
-            }
-            if let Some(value) = &jump.value {
-                // Constant along normals: no derivative of it enters the flux.
-                let at = own.map_or(foot.at.point, |own| own.at.point);
-                shift += sign * value.at(&at);
-            }
-        }
+        let bend = if wedge == Wedge::Quadratic { 0.5 * distance * distance } else { 0.0 };
+        let mut shift = distance * flux / leg_seen.eta_beyond + bend * leg_seen.bend.given;
+        // Constant along normals: no derivative of it enters the flux.
+        shift += leg_seen.value_at(&own.map_or(foot.point, |own| own.at.point));
         self.kept.push(j);
         self.shifts.push(shift);
-        self.across.push(Across { place, leg, distance, along });
+        self.across.push(Across { place, leg, distance, along, bend });
     }
 
     /// Whether nothing jumps here after all: the same diffusivity on both sides of every interface, and no shift.
@@ -131,21 +120,5 @@ impl<'a, const D: usize> Sides<'a, D> {
     /// The frame at the nearest interface.
     pub(super) fn frame(&self) -> Option<([f64; D], Frame<D>)> {
         self.legs.first().map(|leg| (leg.foot.at.point, Frame::new(&leg.foot.at.normal)))
-    }
-}
-
-impl<'a, const D: usize> Leg<'a, D> {
-    fn new(problem: &'a Problem<'a, D>, own: u16, foot: Foot<D>) -> Result<Self, MethodError> {
-        let eta = [own, foot.beyond].map(|l| problem.materials[l as usize].diffusivity.at(&foot.at.point));
-        if let Some(bad) = eta.into_iter().find(|eta| !(*eta > 0.0 && eta.is_finite())) {
-            let what = format!(
-                "the diffusivity is {bad} at the interface point {:?}; it must be positive and finite up to the \
-                 interface",
-                foot.at.point
-            );
-            return Err(MethodError::InvalidProblem { what });
-        }
-        let jump = problem.jump_between(own, foot.beyond);
-        Ok(Self { foot, ratio: eta[0] / eta[1], eta_beyond: eta[1], jump })
     }
 }

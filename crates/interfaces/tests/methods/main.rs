@@ -11,4 +11,5 @@ mod fields;
 mod invariance;
 mod jumps;
 mod neumann;
+mod particle_difference;
 mod support;

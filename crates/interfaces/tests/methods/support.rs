@@ -87,6 +87,14 @@ impl<const D: usize> Setup<D> {
         self
     }
 
+    /// Sources of the regions, at the nodes and anywhere else.
+    pub(crate) fn sources(mut self, fields: Vec<Field<D>>) -> Self {
+        let nodes = self.labels.iter().zip(self.cloud.points());
+        self.source = Some(nodes.map(|(&l, x)| fields[l as usize].at(x)).collect());
+        self.materials.iter_mut().zip(fields).for_each(|(m, f)| m.source = Some(f));
+        self
+    }
+
     /// Conditions by face and position.
     pub(crate) fn conditions(
         mut self,
@@ -122,6 +130,17 @@ impl<const D: usize> Setup<D> {
     pub(crate) fn try_solve(&self, params: GfdmParams) -> Result<SystemSolution, MethodError> {
         let problem = self.problem();
         solve(&problem, &Gfdm { params }.discretize(&problem)?, &Default::default())
+    }
+
+    /// The solution by any method.
+    pub(crate) fn solve_by(&self, method: &impl Method<D>) -> Vec<f64> {
+        let problem = self.problem();
+        solve(&problem, &method.discretize(&problem).unwrap(), &Default::default()).unwrap().u
+    }
+
+    /// Other diffusivities of the regions, with the same values at the nodes.
+    pub(crate) fn set_diffusivities(&mut self, fields: Vec<Field<D>>) {
+        self.materials.iter_mut().zip(fields).for_each(|(m, f)| m.diffusivity = f);
     }
 
     pub(crate) fn solve(&self, params: GfdmParams) -> Vec<f64> {

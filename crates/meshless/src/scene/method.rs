@@ -40,7 +40,8 @@ const WEIGHTS: [(&str, WeightName); 2] =
     [("quartic", WeightName::Quartic), ("exponential", WeightName::Exponential)];
 
 /// Wedges by name.
-const WEDGES: [(&str, WedgeName); 2] = [("plane", WedgeName::Plane), ("varying", WedgeName::Varying)];
+const WEDGES: [(&str, WedgeName); 3] =
+    [("quadratic", WedgeName::Quadratic), ("plane", WedgeName::Plane), ("varying", WedgeName::Varying)];
 
 /// Methods with stencils in strong form.
 const STRONG: &[MethodName] = &[MethodName::GfdmClassical, MethodName::GfdmPositive, MethodName::GfdmHybrid];
@@ -67,7 +68,7 @@ const EVERY: &[MethodName] = &[
 const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
 
 /// Options and the methods that have them; none of the methods that are built has the last ones.
-const OPTIONS: [(&str, &[MethodName]); 11] = [
+const OPTIONS: [(&str, &[MethodName]); 12] = [
     ("smoothing", STRONG),
     ("log_scaling", STRONG),
     ("correction", STRONG),
@@ -76,6 +77,7 @@ const OPTIONS: [(&str, &[MethodName]); 11] = [
     ("selection_tolerance", SELECTING),
     ("weight", PARTICLE),
     ("wedge", PARTICLE),
+    ("flux_weights", PARTICLE),
     ("ghosts", &[]),
     ("kernel", &[]),
     ("sigma", &[]),
@@ -126,6 +128,7 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         support: table.get("support").map(|value| support(&value)).transpose()?,
         selection_tolerance: table.get("selection_tolerance").map(|value| tolerance(&value)).transpose()?,
         weight: table.get("weight").map(|value| value.one_of(&WEIGHTS)).transpose()?,
+        flux_weights: flag("flux_weights")?,
         wedge: table.get("wedge").map(|value| value.one_of(&WEDGES)).transpose()?,
     })
 }

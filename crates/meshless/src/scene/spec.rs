@@ -265,6 +265,8 @@ pub enum WedgeName {
     Plane,
     /// `varying`
     Varying,
+    /// `quadratic`
+    Quadratic,
 }
 
 /// Options of single methods (Kraus et al. 2022, "A meshfree point collocation method for elliptic interface
@@ -287,6 +289,8 @@ pub struct MethodOptions {
     pub weight: Option<WeightName>,
     /// The other side of an interface.
     pub wedge: Option<WedgeName>,
+    /// Values beyond a stiff side count less.
+    pub flux_weights: Option<bool>,
 }
 
 /// What to write besides the report; nothing, if the scene does not say.
