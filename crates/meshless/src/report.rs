@@ -66,6 +66,8 @@ pub struct RegionErrors {
     pub l2: f64,
     /// Relative maximum norm.
     pub linf: f64,
+    /// Relative maximum norm of the gradient.
+    pub gradient_linf: f64,
 }
 
 /// Error estimated by comparison with a coarser cloud.

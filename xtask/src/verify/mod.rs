@@ -10,6 +10,7 @@ mod html;
 mod jobs;
 mod options;
 mod order;
+mod particle_difference;
 mod row;
 mod runner;
 mod study;

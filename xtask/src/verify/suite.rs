@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::study::Study;
-use super::{cost, gfdm, hard};
+use super::{cost, gfdm, hard, particle_difference};
 
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
@@ -21,7 +21,12 @@ const fn later(name: &'static str) -> Suite {
 
 static SUITES: [Suite; 7] = [
     Suite { name: "gfdm", about: gfdm::ABOUT, cases: &gfdm::CASES, run: Some(gfdm::run) },
-    later("particle-difference"),
+    Suite {
+        name: "particle-difference",
+        about: particle_difference::ABOUT,
+        cases: &particle_difference::CASES,
+        run: Some(particle_difference::run),
+    },
     later("dcpse"),
     later("freespace"),
     later("sharp"),

@@ -11,6 +11,10 @@ pub(crate) struct Variant {
     pub(crate) solver: Option<&'static str>,
     /// Radius of interaction in units of the spacing.
     pub(crate) support: Option<f64>,
+    /// How the other side of an interface continues this one.
+    pub(crate) wedge: Option<&'static str>,
+    /// Values beyond a stiff side count less.
+    pub(crate) flux_weights: Option<bool>,
 }
 
 impl Variant {
@@ -24,6 +28,8 @@ impl Variant {
             selection_tolerance: None,
             solver: None,
             support: Some(meshless_tests::kraus::SUPPORT),
+            wedge: None,
+            flux_weights: None,
         }
     }
 
@@ -60,6 +66,8 @@ impl Variant {
         push("selection_tolerance", self.selection_tolerance.map(|t| format!("{t:?}")));
         push("solver", self.solver.map(|s| format!("\"{s}\"")));
         push("support", self.support.map(|s| format!("{s:?}")));
+        push("wedge", self.wedge.map(|w| format!("\"{w}\"")));
+        push("flux_weights", self.flux_weights.map(|b| b.to_string()));
         table
     }
 
@@ -75,6 +83,8 @@ impl Variant {
         );
         push(self.selection_tolerance.map(|t| format!("tolerance={t:e}")));
         push(self.solver.map(|s| format!("solver={s}")));
+        push(self.wedge.map(|w| format!("wedge={w}")));
+        push(self.flux_weights.map(|b| format!("flux_weights={b}")));
         params
     }
 
@@ -92,6 +102,13 @@ impl Variant {
         }
         if let Some(k) = self.smoothing {
             label += &format!(", {k} cycle{}", if k == 1 { "" } else { "s" });
+        }
+        match (self.wedge, self.flux_weights) {
+            (Some("plane"), Some(false)) => label += ", as in the paper",
+            (wedge, weights) => {
+                label += &wedge.map_or_else(String::new, |w| format!(", {w} wedge"));
+                label += if weights == Some(false) { ", equal weights" } else { "" };
+            }
         }
         if self.conservative_neumann == Some(false) {
             label += ", strong Neumann";

@@ -21,19 +21,24 @@ pub(super) fn errors<const D: usize>(
     let discrete = &solved.discrete;
     let volumes = discrete.measures();
     let (mut all, mut slope) = (ErrorNorms::default(), ErrorNorms::default());
-    let mut regions = vec![ErrorNorms::default(); scene.regions.len()];
+    let mut regions = vec![[ErrorNorms::default(); 2]; scene.regions.len()];
     for (i, &u) in solved.system.u.iter().enumerate() {
         let error = u - exact.values[i];
         all.add(volumes[i], error, exact.values[i]);
-        regions[discrete.labels[i] as usize].add(volumes[i], error, exact.values[i]);
         let difference: [f64; D] = std::array::from_fn(|k| gradient[i][k] - exact.gradients[i][k]);
         slope.add(volumes[i], norm(&difference), norm(&exact.gradients[i]));
+        let [value, gradient] = &mut regions[discrete.labels[i] as usize];
+        value.add(volumes[i], error, exact.values[i]);
+        gradient.add(volumes[i], norm(&difference), norm(&exact.gradients[i]));
     }
     let regions: BTreeMap<String, RegionErrors> = scene
         .regions
         .iter()
         .zip(&regions)
-        .map(|(region, norms)| (region.name.clone(), RegionErrors { l2: norms.l2(), linf: norms.linf() }))
+        .map(|(region, [value, gradient])| {
+            let errors = RegionErrors { l2: value.l2(), linf: value.linf(), gradient_linf: gradient.linf() };
+            (region.name.clone(), errors)
+        })
         .collect();
     Errors { l2: all.l2(), linf: all.linf(), gradient_linf: slope.linf(), regions }
 }
