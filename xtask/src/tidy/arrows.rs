@@ -14,6 +14,7 @@ const LEAVES: &[&str] = &[
     "meshless-output",
     "meshless-sparse",
     "meshless-stencils",
+    "meshless-time",
 ];
 
 /// What a package of the workspace may depend on within it.

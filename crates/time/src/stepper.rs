@@ -1,0 +1,178 @@
+//! The time loop.
+
+use crate::tableau::{DIAGONAL, ERROR, GAMMA, WEIGHT};
+use crate::{Params, Semidiscrete, State, StepError};
+
+/// Part of the largest step allowed by the error that is taken.
+const SAFETY: f64 = 0.85;
+/// A step size is kept until it could grow by this factor: a change costs a new factorisation.
+const WORTH_GROWING: f64 = 1.6;
+/// Largest growth and shrinkage at once.
+const MOST_GROWTH: f64 = 8.0;
+const MOST_SHRINKAGE: f64 = 0.1;
+/// Least share of the tolerance that a step has, however short: what is sharp at the start is gone soon, and its error
+/// with it.
+const LEAST_SHARE: f64 = 1e-2;
+/// Order in the step size of the estimate over the step's share of the tolerance.
+const SHARE_ORDER: f64 = 2.0;
+/// First step, relative to the time in which the solution would change by itself, times the cubic root of the
+/// tolerance.
+const FIRST: f64 = 0.1;
+/// First step relative to the whole, where nothing happens at the start.
+const FIRST_OF_ALL: f64 = 1e-3;
+/// Steps below this part of the time reached do not change it reliably.
+const SMALLEST: f64 = 1e-13;
+
+/// Integrates a [`Semidiscrete`] system.
+#[derive(Debug)]
+pub struct Stepper<S> {
+    system: S,
+    params: Params,
+    state: State,
+}
+
+/// A tried step.
+struct Trial {
+    u: Vec<f64>,
+    slope: Vec<f64>,
+    error: f64,
+}
+
+impl<S: Semidiscrete> Stepper<S> {
+    /// Starts at `t` from `u`, which need not satisfy the algebraic rows.
+    ///
+    /// # Errors
+    /// [`StepError::Invalid`] for a tolerance or a first step that is not positive, and initial values that are not
+    /// finite; those of the system.
+    pub fn new(mut system: S, t: f64, u: Vec<f64>, params: Params) -> Result<Self, StepError<S::Error>> {
+        check(&params, t, &u)?;
+        let mut slope = vec![0.0; u.len()];
+        system.slope(t, &u, &mut slope).map_err(|source| StepError::System { t, source })?;
+        let scale = system.norm(&u);
+        let step = params.first_step.unwrap_or(0.0);
+        let state = State { t, step, u, slope, scale, steps: 0, rejected: 0 };
+        Ok(Self { system, params, state })
+    }
+
+    /// Goes on from a state that was kept.
+    pub fn resume(system: S, state: State, params: Params) -> Self {
+        Self { system, params, state }
+    }
+
+    /// Where the integration stands.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The system, and where the integration stands.
+    pub fn into_parts(self) -> (S, State) {
+        (self.system, self.state)
+    }
+
+    /// The system.
+    pub fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// Steps until `end` is reached, exactly.
+    ///
+    /// # Errors
+    /// See [`step`](Self::step).
+    pub fn advance_to(&mut self, end: f64) -> Result<(), StepError<S::Error>> {
+        while self.state.t < end {
+            self.step(end)?;
+        }
+        Ok(())
+    }
+
+    /// Takes one step towards `end`, and no farther. Does nothing at `end`.
+    ///
+    /// # Errors
+    /// [`StepError::TooSmall`] and [`StepError::TooMany`] where the tolerance cannot be reached, those of the system.
+    pub fn step(&mut self, end: f64) -> Result<(), StepError<S::Error>> {
+        let t = self.state.t;
+        if t >= end {
+            return Ok(());
+        }
+        if self.state.step <= 0.0 {
+            self.state.step = self.first_step(end - t);
+        }
+        loop {
+            if self.state.steps + self.state.rejected >= self.params.max_steps {
+                return Err(StepError::TooMany { steps: self.params.max_steps, t });
+            }
+            // Equal steps to the end: the last one needs no matrix of its own.
+            let count = ((end - t) / self.state.step * (1.0 - 1e-12)).ceil().max(1.0);
+            let step = (end - t) / count;
+            let next = if count == 1.0 { end } else { t + step };
+            if step <= SMALLEST * t.abs().max(end.abs()) {
+                return Err(StepError::TooSmall { t, step });
+            }
+            let trial = self.attempt(t, next, step).map_err(|source| StepError::System { t, source })?;
+            if !trial.error.is_finite() {
+                return Err(StepError::NotFinite { t: next });
+            }
+            let share = (step / self.params.whole).max(LEAST_SHARE);
+            let fits = self.params.tolerance * share / trial.error.max(f64::MIN_POSITIVE);
+            let factor = SAFETY * fits.powf(1.0 / SHARE_ORDER);
+            if fits < 1.0 && !self.params.fixed {
+                self.state.rejected += 1;
+                self.state.step = step * factor.max(MOST_SHRINKAGE);
+                continue;
+            }
+            let grows = factor >= WORTH_GROWING && !self.params.fixed;
+            self.state.step = if grows { step * factor.min(MOST_GROWTH) } else { step };
+            self.state.scale = self.state.scale.max(self.system.norm(&trial.u));
+            self.state.t = next;
+            self.state.u = trial.u;
+            self.state.slope = trial.slope;
+            self.state.steps += 1;
+            return Ok(());
+        }
+    }
+
+    /// A step that is short beside the time in which the solution changes.
+    fn first_step(&self, whole: f64) -> f64 {
+        let rate = self.system.norm(&self.state.slope);
+        let wanted = FIRST * self.params.tolerance.cbrt() * self.state.scale / rate;
+        if wanted > 0.0 && wanted.is_finite() { wanted.min(0.1 * whole) } else { FIRST_OF_ALL * whole }
+    }
+
+    /// One step of TR-BDF2 with its error estimate.
+    ///
+    /// Slopes of the implicit stages are those that the stages' equations give, `(u - v) / c`: evaluating them from u
+    /// would multiply what the solver left over by the stiffness.
+    fn attempt(&mut self, t: f64, next: f64, step: f64) -> Result<Trial, S::Error> {
+        let State { u: u0, slope: k1, scale, .. } = &self.state;
+        let (n, c) = (u0.len(), DIAGONAL * step);
+        let slope_of = |u: &[f64], v: &[f64]| -> Vec<f64> { (0..n).map(|i| (u[i] - v[i]) / c).collect() };
+        let v: Vec<f64> = (0..n).map(|i| u0[i] + c * k1[i]).collect();
+        let mut u = u0.clone();
+        self.system.solve(t + GAMMA * step, c, &v, &mut u)?;
+        let k2 = slope_of(&u, &v);
+        let v: Vec<f64> = (0..n).map(|i| u0[i] + step * WEIGHT * (k1[i] + k2[i])).collect();
+        self.system.solve(next, c, &v, &mut u)?;
+        let k3 = slope_of(&u, &v);
+        let mut e: Vec<f64> =
+            (0..n).map(|i| step * (ERROR[0] * k1[i] + ERROR[1] * k2[i] + ERROR[2] * k3[i])).collect();
+        self.system.damp(next, c, &mut e)?;
+        let scale = scale.max(self.system.norm(&u));
+        let error = self.system.norm(&e);
+        let error = if scale > 0.0 { error / scale } else { error };
+        Ok(Trial { u, slope: k3, error })
+    }
+}
+
+fn check<E: std::error::Error>(params: &Params, t: f64, u: &[f64]) -> Result<(), StepError<E>> {
+    let positive = |what, value: f64| match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(StepError::Invalid { what, value, expected: "positive and finite" }),
+    };
+    positive("the tolerance", params.tolerance)?;
+    positive("the whole time", params.whole)?;
+    params.first_step.map_or(Ok(()), |step| positive("the first step", step))?;
+    match std::iter::once(&t).chain(u).find(|x| !x.is_finite()) {
+        Some(&value) => Err(StepError::Invalid { what: "an initial value", value, expected: "finite" }),
+        None => Ok(()),
+    }
+}

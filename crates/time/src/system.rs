@@ -1,0 +1,30 @@
+//! What is integrated.
+
+/// A system `M du/dt + A(t) u = b(t)` with a diagonal mass matrix M; rows without mass are algebraic.
+pub trait Semidiscrete {
+    /// What can go wrong in a solve.
+    type Error: std::error::Error;
+
+    /// `M^-1 (b(t) - A(t) u)`; zero in algebraic rows.
+    ///
+    /// # Errors
+    /// Those of evaluating the data at `t`.
+    fn slope(&mut self, t: f64, u: &[f64], out: &mut [f64]) -> Result<(), Self::Error>;
+
+    /// Solves `M (u - v) / c + A(t) u = b(t)`, algebraic rows `A(t) u = b(t)`. `u` holds a guess when called.
+    ///
+    /// # Errors
+    /// Those of the linear solver, and of evaluating the data at `t`.
+    fn solve(&mut self, t: f64, c: f64, v: &[f64], u: &mut [f64]) -> Result<(), Self::Error>;
+
+    /// Replaces e by the solution x of `M (x - e) / c + A(t) x = 0`, algebraic rows `A(t) x = 0`: takes from an error
+    /// estimate what the method itself would damp.
+    ///
+    /// # Errors
+    /// Those of the linear solver.
+    fn damp(&mut self, t: f64, c: f64, e: &mut [f64]) -> Result<(), Self::Error>;
+
+    /// The norm in which errors are measured, best one that does not depend on the number of unknowns: the root of a
+    /// mean square weighted by volumes.
+    fn norm(&self, e: &[f64]) -> f64;
+}
