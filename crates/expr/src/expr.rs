@@ -10,6 +10,7 @@ use crate::error::ParseError;
 use crate::node::Node;
 use crate::parser;
 use crate::program::Program;
+use crate::substitute::substitute;
 
 /// A parsed expression in variables that are known by their index.
 ///
@@ -79,6 +80,20 @@ impl Expr {
             "`{self}` has variables beyond the {known} that were given values"
         );
         block::run(&self.program, points, extra, out);
+    }
+
+    /// The expression with a number in place of a variable, which does not occur in it any more. The other variables keep
+    /// their indices.
+    ///
+    /// ```
+    /// let wave = meshless_expr::Expr::parse("sin(x - t)*t", &["x", "t"])?;
+    /// let still = wave.with_value(1, 2.0);
+    /// assert_eq!(still.eval(&[0.5]), wave.eval(&[0.5, 2.0]));
+    /// # Ok::<(), meshless_expr::ParseError>(())
+    /// ```
+    #[must_use]
+    pub fn with_value(&self, variable: usize, value: f64) -> Self {
+        Self::new(substitute(&self.root, variable, value), self.names.clone())
     }
 
     /// Partial derivative, with zeros, ones and constants simplified away.

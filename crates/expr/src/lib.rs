@@ -49,6 +49,7 @@ mod ops;
 mod parser;
 mod program;
 mod simplify;
+mod substitute;
 mod suggest;
 
 pub use error::ParseError;

@@ -67,4 +67,4 @@ pub use method::{Counts, Discretization, Method, RowKind};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};
-pub use system::{SystemParams, SystemSolution, solve};
+pub use system::{PreparedSystem, SystemParams, SystemSolution, solve};

@@ -49,7 +49,7 @@ pub use difference::{DifferenceMatrix, MatrixReport, Reduced, WrongSign};
 pub use error::MatrixError;
 pub use floating::{
     Bordered, BorderedSolution, ChainLink, Cluster, ComponentInfo, DEFAULT_THRESHOLD, GroupUnknowns,
-    NeumannSolution, Split, clusters, pure_neumann,
+    NeumannSolution, PreparedBordered, Split, clusters, pure_neumann,
 };
 pub use market::{MarketError, read_matrix_market, write_matrix_market};
 pub use precond::{IncompleteLu, Jacobi, Preconditioner, PreconditionerKind, ilu0, ilut};

@@ -1,11 +1,13 @@
 //! The layer below all methods: prescribed values, floating constants, the linear solver.
 
 mod floating;
+mod prepared;
 
 use meshless_sparse::{SolveInfo, SolverParams, Split};
 
 use crate::{Discretization, MethodError, Problem};
 use floating::Floating;
+pub use prepared::PreparedSystem;
 
 /// Part of sources and fluxes that may be left over in a pure Neumann problem, relative to their size: a scene that
 /// balances does so up to the discretisation error of its integrals.
@@ -55,21 +57,11 @@ pub fn solve<const D: usize>(
         return solve_unanchored(problem, discretization, params);
     }
     let known = problem.dirichlet();
-    let reduced = rows.eliminate(&known, &discretization.rhs)?;
-    let split = match params.split_floating {
-        true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
-        false => None,
-    };
-    let (solution, info) = match &split {
-        Some(split) => {
-            let solved = split.apply(&reduced.matrix, &reduced.rhs)?.solve(&params.solver)?;
-            (split.recover(&solved.values, &solved.extra)?, solved.info)
-        }
-        None => meshless_sparse::solve(&reduced.matrix.to_csr(), &reduced.rhs, &params.solver)?,
-    };
-    let u = reduced.expand(&solution, &known)?;
-    let floating_constants = split.as_ref().map_or(0, Split::extra);
-    Ok(SystemSolution { u, info, floating_constants, up_to_constant: false })
+    let is_known: Vec<bool> = known.iter().map(Option::is_some).collect();
+    let rhs: Vec<f64> = known.iter().zip(&discretization.rhs).map(|(g, &b)| g.unwrap_or(b)).collect();
+    let prepared = PreparedSystem::new(problem, rows.clone(), &is_known, params)?;
+    let (u, info) = prepared.solve(&rhs)?;
+    Ok(SystemSolution { u, info, floating_constants: prepared.floating_constants(), up_to_constant: false })
 }
 
 /// A pure Neumann problem: one node is pinned, and an extra unknown takes up what is not balanced.

@@ -52,7 +52,7 @@ fn condition(table: &Table<'_>) -> Result<ConditionSpec, SceneError> {
         }
         ["robin"] => robin(&table.require("robin")?),
         [key] => {
-            let field = table.require(key)?.expression()?;
+            let field = table.require(key)?.data_expression()?;
             Ok(match key {
                 "dirichlet" => ConditionSpec::Dirichlet(field),
                 "neumann" => ConditionSpec::Neumann(field),
@@ -64,7 +64,7 @@ fn condition(table: &Table<'_>) -> Result<ConditionSpec, SceneError> {
 
 fn robin(value: &Value<'_>) -> Result<ConditionSpec, SceneError> {
     let table = value.subtable(&["a", "b", "g"])?;
-    let field = |key: &str| table.require(key)?.expression();
+    let field = |key: &str| table.require(key)?.data_expression();
     let (a, b, g) = (field("a")?, field("b")?, field("g")?);
     if b.as_constant() == Some(0.0) {
         let message = "b is zero, so the condition `a u + b eta du/dn = g` has no flux term";

@@ -9,8 +9,18 @@ use super::error::SceneError;
 use super::reader::Value;
 use super::source::{Place, Source};
 
-/// Variables of an expression: as many as the scene has dimensions.
+/// Variables of an expression of position: as many as the scene has dimensions.
 const VARIABLES: [&str; 3] = ["x", "y", "z"];
+
+/// The variable that comes after them where data may change with time.
+const TIME: &str = "t";
+
+/// What an expression may depend on.
+#[derive(Debug, Clone, Copy)]
+struct Variables {
+    dimension: usize,
+    time: bool,
+}
 
 /// An expression of position, or a number, with its place in the file.
 #[derive(Debug, Clone)]
@@ -28,7 +38,17 @@ impl ExprField {
     /// option and its text.
     pub(crate) fn from_command_line(option: &str, text: &str, dimension: usize) -> Result<Self, SceneError> {
         let place = Place::new(&Arc::new(Source::new("command line", text)), option, 0..text.len());
-        parse(text, &place, dimension)?.check_positive()
+        parse(text, &place, Variables { dimension, time: false })?.check_positive()
+    }
+
+    /// Whether the value changes with time, in a scene of that dimension.
+    pub(crate) fn varies_in_time(&self, dimension: usize) -> bool {
+        self.expr.depends_on(dimension)
+    }
+
+    /// The field at one time.
+    pub(super) fn at_time(&self, dimension: usize, t: f64) -> Self {
+        Self { expr: self.expr.with_value(dimension, t), ..self.clone() }
     }
 
     /// The value, if the expression is constant and therefore finite.
@@ -48,8 +68,17 @@ impl ExprField {
 }
 
 impl Value<'_> {
-    /// A number, or an expression in quotes.
+    /// A number, or an expression of position in quotes.
     pub(super) fn expression(&self) -> Result<ExprField, SceneError> {
+        self.expression_of(Variables { dimension: self.dimension, time: false })
+    }
+
+    /// The same, which may also depend on `t` in a scene with `[time]`.
+    pub(super) fn data_expression(&self) -> Result<ExprField, SceneError> {
+        self.expression_of(Variables { dimension: self.dimension, time: self.unsteady })
+    }
+
+    fn expression_of(&self, variables: Variables) -> Result<ExprField, SceneError> {
         if let Some(number) = self.as_number() {
             let text = self.place.text().to_owned();
             return Ok(ExprField { text, expr: Expr::constant(number?), place: self.place.clone() });
@@ -58,12 +87,14 @@ impl Value<'_> {
             let help = "write a number, or an expression in quotes";
             return Err(self.expected("a number or an expression", help));
         };
-        parse(text, &self.place, self.dimension)
+        parse(text, &self.place, variables)
     }
 }
 
-fn parse(text: &str, place: &Place, dimension: usize) -> Result<ExprField, SceneError> {
-    let expr = Expr::parse(text, &VARIABLES[..dimension]).map_err(|error| {
+fn parse(text: &str, place: &Place, variables: Variables) -> Result<ExprField, SceneError> {
+    let names: Vec<&str> =
+        VARIABLES[..variables.dimension].iter().copied().chain(variables.time.then_some(TIME)).collect();
+    let expr = Expr::parse(text, &names).map_err(|error| {
         let ParseError { span, message, help } = error;
         let place = match content_offset(place.text(), text) {
             _ if place.text() == text => place.at(span),

@@ -21,6 +21,7 @@ mod source;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod time;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -34,6 +35,8 @@ pub use spec::{
     MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SolverName, WedgeName,
     WeightName,
 };
+
+pub use time::TimeSpec;
 
 use source::Source;
 
@@ -59,6 +62,8 @@ pub struct Scene {
     pub boundaries: Vec<BoundarySpec>,
     /// What the scene overrides of the plan's choices.
     pub method: MethodSpec,
+    /// How u changes with time; a steady scene has none.
+    pub time: Option<TimeSpec>,
     /// Points whose values are reported, each of `dimension` coordinates.
     pub probes: Vec<Vec<f64>>,
     /// What to write besides the report.

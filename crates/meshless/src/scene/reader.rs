@@ -13,6 +13,8 @@ pub(super) struct Value<'a> {
     pub(super) place: Place,
     /// Dimension of the scene; 0 while it is not known.
     pub(super) dimension: usize,
+    /// Whether the scene has `[time]`.
+    pub(super) unsteady: bool,
     inner: &'a DeValue<'a>,
 }
 
@@ -20,17 +22,22 @@ pub(super) struct Value<'a> {
 pub(super) struct Table<'a> {
     pub(super) place: Place,
     pub(super) dimension: usize,
+    pub(super) unsteady: bool,
     entries: &'a DeTable<'a>,
 }
 
 impl<'a> Table<'a> {
     /// The whole file; its place is the very beginning.
     pub(super) fn root(source: &Arc<Source>, entries: &'a DeTable<'a>) -> Self {
-        Self { place: Place::new(source, "", 0..0), dimension: 0, entries }
+        Self { place: Place::new(source, "", 0..0), dimension: 0, unsteady: false, entries }
     }
 
     pub(super) fn with_dimension(self, dimension: usize) -> Self {
         Self { dimension, ..self }
+    }
+
+    pub(super) fn with_time(self, unsteady: bool) -> Self {
+        Self { unsteady, ..self }
     }
 
     /// Refuses keys other than these; the first one in the file is reported.
@@ -54,7 +61,7 @@ impl<'a> Table<'a> {
     pub(super) fn get(&self, key: &str) -> Option<Value<'a>> {
         let value = self.entries.get(key)?;
         let place = self.place.at(value.span()).named(self.path(key));
-        Some(Value { place, dimension: self.dimension, inner: value.get_ref() })
+        Some(Value { place, dimension: self.dimension, unsteady: self.unsteady, inner: value.get_ref() })
     }
 
     /// The value, or an error at the head of the table.
@@ -105,7 +112,9 @@ impl<'a> Value<'a> {
 
     pub(super) fn table(self) -> Result<Table<'a>, SceneError> {
         match self.inner {
-            DeValue::Table(entries) => Ok(Table { place: self.place, dimension: self.dimension, entries }),
+            DeValue::Table(entries) => {
+                Ok(Table { place: self.place, dimension: self.dimension, unsteady: self.unsteady, entries })
+            }
             _ => Err(self.expected("a table", "")),
         }
     }
@@ -122,7 +131,7 @@ impl<'a> Value<'a> {
         let DeValue::Array(items) = self.inner else { return Err(self.expected("an array", "")) };
         let item = |(index, item): (usize, &'a toml::Spanned<DeValue<'a>>)| {
             let place = self.place.at(item.span()).named(format!("{}[{index}]", self.place.key));
-            Self { place, dimension: self.dimension, inner: item.get_ref() }
+            Self { place, dimension: self.dimension, unsteady: self.unsteady, inner: item.get_ref() }
         };
         Ok(items.iter().enumerate().map(item).collect())
     }

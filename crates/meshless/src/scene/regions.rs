@@ -40,9 +40,9 @@ fn region(table: &Table<'_>) -> Result<RegionSpec, SceneError> {
     Ok(RegionSpec {
         name: table.require("name")?.name()?,
         geometry: optional_shape(table)?,
-        diffusivity: table.require("diffusivity")?.expression()?.check_positive()?,
-        source: table.get("source").map(|value| value.expression()).transpose()?,
-        exact: table.get("exact").map(|value| value.expression()).transpose()?,
+        diffusivity: table.require("diffusivity")?.data_expression()?.check_positive()?,
+        source: table.get("source").map(|value| value.data_expression()).transpose()?,
+        exact: table.get("exact").map(|value| value.data_expression()).transpose()?,
         place: table.place.clone(),
     })
 }
@@ -75,8 +75,8 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
         }
         interfaces.push(InterfaceSpec {
             between,
-            jump: table.get("jump").map(|value| value.expression()).transpose()?,
-            flux_jump: table.get("flux_jump").map(|value| value.expression()).transpose()?,
+            jump: table.get("jump").map(|value| value.data_expression()).transpose()?,
+            flux_jump: table.get("flux_jump").map(|value| value.data_expression()).transpose()?,
             place: table.place,
         });
     }

@@ -8,7 +8,7 @@ use super::error::SceneError;
 use super::reader::Table;
 use super::source::{MAX_FILE_BYTES, Place, Source};
 use super::spec::OutputSpec;
-use super::{Scene, boundaries, domain, method, regions};
+use super::{Scene, boundaries, domain, method, regions, time};
 
 const KEYS: [&str; 13] = [
     "title",
@@ -27,10 +27,8 @@ const KEYS: [&str; 13] = [
 ];
 
 /// Sections that are recognised and not built.
-const FUTURE_SECTIONS: [(&str, &str); 2] = [
-    ("accuracy", "remove the section, and choose `spacing` by the reported estimate"),
-    ("time", "remove the section: scenes are steady so far"),
-];
+const FUTURE_SECTIONS: [(&str, &str); 1] =
+    [("accuracy", "remove the section, and choose `spacing` by the reported estimate")];
 
 pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     if source.text.len() > MAX_FILE_BYTES {
@@ -45,7 +43,8 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         }
     }
     let dimension = root.require("dimension")?.integer(1, 3)? as usize;
-    let root = root.with_dimension(dimension);
+    let unsteady = root.has("time");
+    let root = root.with_dimension(dimension).with_time(unsteady);
     let domain = domain::domain(&root)?;
     let points = domain::points(&root)?;
     let holes = domain::holes(&root)?;
@@ -56,6 +55,7 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         interfaces: regions::interfaces(&root, &regions)?,
         boundaries: boundaries::boundaries(&root, &domain, &holes)?,
         method: method::method(&root)?,
+        time: time::time(&root)?,
         probes: probes(&root)?,
         output: output(&root)?,
         domain,

@@ -131,34 +131,21 @@ impl Bordered {
     /// Those of [`solve`](crate::solve), and [`SolveError::Undetermined`] where the equations leave an extra unknown
     /// open.
     pub fn solve(&self, params: &SolverParams) -> Result<BorderedSolution, SolveError> {
-        let elimination = Elimination::new(self, params)?;
-        let mut products = elimination.products;
-        let (mut values, mut extra, mut info) = elimination.solve(&self.rhs)?;
-        products += info.iterations;
-        if self.extra() > 0 {
-            let residual = self.residual(&values, &extra);
-            // What is left may be rounding that an iterative method cannot reduce: then the solution stays as it is.
-            if let Ok((d_values, d_extra, d_info)) = elimination.solve(&residual) {
-                products += d_info.iterations;
-                let better_values: Vec<f64> = values.iter().zip(&d_values).map(|(a, b)| a + b).collect();
-                let better_extra: Vec<f64> = extra.iter().zip(&d_extra).map(|(a, b)| a + b).collect();
-                if self.backward_error(&better_values, &better_extra) <= self.backward_error(&values, &extra)
-                {
-                    (values, extra) = (better_values, better_extra);
-                }
-            }
-            info.residual = norm(&self.residual(&values, &extra)) / norm(&self.rhs).max(f64::MIN_POSITIVE);
-            info.backward_error = self.backward_error(&values, &extra);
-        }
-        info.iterations = products;
-        Ok(BorderedSolution { values, extra, info })
+        let prepared = PreparedBordered::new(self.clone(), params)?;
+        let mut solution = prepared.solve(&self.rhs)?;
+        solution.info.iterations += prepared.products;
+        Ok(solution)
     }
 
     /// `b - A w - B c`, by differences.
     #[must_use]
     pub fn residual(&self, values: &[f64], extra: &[f64]) -> Vec<f64> {
+        self.residual_of(&self.rhs, values, extra)
+    }
+
+    fn residual_of(&self, rhs: &[f64], values: &[f64], extra: &[f64]) -> Vec<f64> {
         let mut r = vec![0.0; self.n()];
-        self.matrix.residual(values, &self.rhs, &mut r);
+        self.matrix.residual(values, rhs, &mut r);
         for (column, c) in self.columns.iter().zip(extra) {
             for &(row, value) in column {
                 r[row as usize] -= value * c;
@@ -168,9 +155,9 @@ impl Bordered {
     }
 
     /// Largest residual relative to the sum of the sizes of the terms of its equation.
-    fn backward_error(&self, values: &[f64], extra: &[f64]) -> f64 {
-        let r = self.residual(values, extra);
-        let mut size: Vec<f64> = self.rhs.iter().map(|b| b.abs()).collect();
+    fn backward_error(&self, rhs: &[f64], values: &[f64], extra: &[f64]) -> f64 {
+        let r = self.residual_of(rhs, values, extra);
+        let mut size: Vec<f64> = rhs.iter().map(|b| b.abs()).collect();
         for i in 0..self.n() {
             let (columns, row) = self.matrix.row(i);
             let terms = columns.iter().zip(row).map(|(&j, a)| (a * values[j as usize]).abs());
@@ -202,9 +189,10 @@ impl Bordered {
     }
 }
 
-/// What is computed once for all right-hand sides.
-struct Elimination<'a> {
-    system: &'a Bordered,
+/// A [`Bordered`] system with what is computed once for all right-hand sides.
+#[derive(Debug)]
+pub struct PreparedBordered {
+    system: Bordered,
     prepared: Prepared,
     /// `A'^-1 B'`, column by column.
     responses: Vec<Vec<f64>>,
@@ -212,8 +200,12 @@ struct Elimination<'a> {
     products: usize,
 }
 
-impl<'a> Elimination<'a> {
-    fn new(system: &'a Bordered, params: &SolverParams) -> Result<Self, SolveError> {
+impl PreparedBordered {
+    /// Factors, or sets up the preconditioner, and solves for the response to every extra unknown.
+    ///
+    /// # Errors
+    /// See [`Bordered::solve`].
+    pub fn new(system: Bordered, params: &SolverParams) -> Result<Self, SolveError> {
         let prepared = Prepared::new(&system.pinned_matrix(), params)?;
         let m = system.extra();
         let mut schur = vec![vec![0.0; m]; m];
@@ -235,7 +227,36 @@ impl<'a> Elimination<'a> {
         Ok(Self { system, prepared, responses, schur: DenseLu::new(schur)?, products })
     }
 
-    fn solve(&self, b: &[f64]) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
+    /// Solves for another right-hand side, with one step of iterative refinement.
+    ///
+    /// # Errors
+    /// See [`Bordered::solve`]; [`MatrixError::Length`] where `rhs` does not have one element for each equation.
+    pub fn solve(&self, rhs: &[f64]) -> Result<BorderedSolution, SolveError> {
+        let system = &self.system;
+        MatrixError::check_length("right-hand side", rhs.len(), system.n())?;
+        let (mut values, mut extra, mut info) = self.eliminate(rhs)?;
+        let mut products = info.iterations;
+        if system.extra() > 0 {
+            let residual = system.residual_of(rhs, &values, &extra);
+            // What is left may be rounding that an iterative method cannot reduce: then the solution stays as it is.
+            if let Ok((d_values, d_extra, d_info)) = self.eliminate(&residual) {
+                products += d_info.iterations;
+                let better_values: Vec<f64> = values.iter().zip(&d_values).map(|(a, b)| a + b).collect();
+                let better_extra: Vec<f64> = extra.iter().zip(&d_extra).map(|(a, b)| a + b).collect();
+                let better = system.backward_error(rhs, &better_values, &better_extra);
+                if better <= system.backward_error(rhs, &values, &extra) {
+                    (values, extra) = (better_values, better_extra);
+                }
+            }
+            let left = norm(&system.residual_of(rhs, &values, &extra));
+            info.residual = left / norm(rhs).max(f64::MIN_POSITIVE);
+            info.backward_error = system.backward_error(rhs, &values, &extra);
+        }
+        info.iterations = products;
+        Ok(BorderedSolution { values, extra, info })
+    }
+
+    fn eliminate(&self, b: &[f64]) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
         let (mut w, info) = self.prepared.solve(&self.system.without_pinned(b.to_vec()))?;
         let carried = self.system.border_rows(&w);
         let g: Vec<f64> =

@@ -6,7 +6,7 @@ mod dense;
 mod neumann;
 mod split;
 
-pub use bordered::{Bordered, BorderedSolution};
+pub use bordered::{Bordered, BorderedSolution, PreparedBordered};
 pub use clusters::{Cluster, ComponentInfo, DEFAULT_THRESHOLD, clusters};
 pub use neumann::{NeumannSolution, pure_neumann};
 pub use split::{ChainLink, GroupUnknowns, Split};

@@ -1,0 +1,86 @@
+//! A system that is factored once and solved for many right-hand sides.
+
+use meshless_sparse::{DifferenceMatrix, Prepared, PreparedBordered, SolveInfo, Split};
+
+use super::{SystemParams, floating};
+use crate::{MethodError, Problem};
+
+/// Marks a node whose value is prescribed.
+const KNOWN: u32 = u32::MAX;
+
+/// The rows of a discretisation, prescribed values eliminated and constants of floating regions split off, with factors
+/// or a preconditioner.
+#[derive(Debug)]
+pub struct PreparedSystem {
+    /// All rows, those of prescribed values included.
+    rows: DifferenceMatrix,
+    /// Unknown of every node, or [`KNOWN`].
+    unknown_of: Vec<u32>,
+    solver: Solver,
+}
+
+#[derive(Debug)]
+enum Solver {
+    Plain(Box<Prepared>),
+    Split(Box<PreparedBordered>, Split),
+}
+
+impl PreparedSystem {
+    /// Prepares rows in which values are prescribed at the nodes that are `known`.
+    ///
+    /// # Errors
+    /// Those of the solver.
+    pub fn new<const D: usize>(
+        problem: &Problem<'_, D>,
+        rows: DifferenceMatrix,
+        known: &[bool],
+        params: &SystemParams,
+    ) -> Result<Self, MethodError> {
+        let zeros: Vec<Option<f64>> = known.iter().map(|&k| k.then_some(0.0)).collect();
+        let reduced = rows.eliminate(&zeros, &vec![0.0; rows.n()])?;
+        let split = match params.split_floating {
+            true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
+            false => None,
+        };
+        let solver = match split {
+            Some(split) => {
+                let bordered = split.apply(&reduced.matrix, &reduced.rhs)?;
+                Solver::Split(Box::new(PreparedBordered::new(bordered, &params.solver)?), split)
+            }
+            None => Solver::Plain(Box::new(Prepared::new(&reduced.matrix.to_csr(), &params.solver)?)),
+        };
+        let mut unknown_of = vec![KNOWN; rows.n()];
+        (0..).zip(&reduced.map).for_each(|(k, &node)| unknown_of[node as usize] = k);
+        Ok(Self { rows, unknown_of, solver })
+    }
+
+    /// Constants of floating regions that are solved for beside the nodes.
+    pub fn floating_constants(&self) -> usize {
+        match &self.solver {
+            Solver::Plain(_) => 0,
+            Solver::Split(_, split) => split.extra(),
+        }
+    }
+
+    /// The value of every node for a right-hand side; at the known nodes, that is the prescribed value.
+    ///
+    /// # Errors
+    /// Those of the solver.
+    pub fn solve(&self, rhs: &[f64]) -> Result<(Vec<f64>, SolveInfo), MethodError> {
+        let mut reduced = Vec::with_capacity(rhs.len());
+        for (i, &b) in rhs.iter().enumerate().filter(|(i, _)| self.unknown_of[*i] != KNOWN) {
+            let (columns, values) = self.rows.row(i);
+            let known = columns.iter().zip(values).filter(|(j, _)| self.unknown_of[**j as usize] == KNOWN);
+            reduced.push(b - known.map(|(&j, a)| a * rhs[j as usize]).sum::<f64>());
+        }
+        let (solution, info) = match &self.solver {
+            Solver::Plain(prepared) => prepared.solve(&reduced)?,
+            Solver::Split(prepared, split) => {
+                let solved = prepared.solve(&reduced)?;
+                (split.recover(&solved.values, &solved.extra)?, solved.info)
+            }
+        };
+        let value = |(&k, &b): (&u32, &f64)| if k == KNOWN { b } else { solution[k as usize] };
+        Ok((self.unknown_of.iter().zip(rhs).map(value).collect(), info))
+    }
+}
