@@ -10,6 +10,7 @@ pub mod particle_difference;
 pub mod small;
 pub mod smooth;
 pub mod solve;
+pub mod unsteady;
 
 /// The Rust blocks of the README are doctests of this package.
 #[cfg(doctest)]

@@ -41,6 +41,9 @@ pub(crate) struct SolveArgs {
     /// Relative L2 error to reach (not supported yet).
     #[arg(long)]
     pub(crate) tolerance: Option<f64>,
+    /// File to keep an unsteady run in; if it exists the run goes on from it, to the same result.
+    #[arg(long)]
+    pub(crate) checkpoint: Option<PathBuf>,
     /// Threads to use; all cores by default. Results do not depend on it.
     #[arg(long)]
     pub(crate) threads: Option<usize>,

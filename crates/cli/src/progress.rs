@@ -30,6 +30,11 @@ impl Progress for Bar {
         self.bar.inc(1);
         self.bar.set_message(stage.name());
     }
+
+    fn proceed(&mut self, t: f64, end: f64) -> bool {
+        self.bar.set_message(format!("t = {t:.4e} of {end:e}"));
+        true
+    }
 }
 
 impl Drop for Bar {

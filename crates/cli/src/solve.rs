@@ -1,14 +1,18 @@
 //! `meshless solve`.
 
 use std::path::Path;
+use std::time::Duration;
 
 use meshless::plan::Plan;
 use meshless::report::Report;
-use meshless::{Solution, execute, write_outputs};
+use meshless::{Checkpoint, Solution, execute_from, write_outputs};
 
 use crate::Failure;
 use crate::args::SolveArgs;
 use crate::progress::Bar;
+
+/// Least time between two writes of a checkpoint.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
 
 pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
     if args.tolerance.is_some() {
@@ -22,7 +26,13 @@ pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
     if writes {
         prepare(&args.out)?;
     }
-    let solution = on_threads(args.threads, || execute(&scene, &plan, &mut Bar::new(&plan)))??;
+    if args.checkpoint.is_some() && scene.time.is_none() {
+        return Err(Failure::input("error: --checkpoint: the scene is steady; it needs a [time] section"));
+    }
+    let checkpoint =
+        args.checkpoint.as_ref().map(|path| Checkpoint { path: path.clone(), every: CHECKPOINT_INTERVAL });
+    let run = || execute_from(&scene, &plan, checkpoint.as_ref(), &mut Bar::new(&plan));
+    let solution = on_threads(args.threads, run)??;
     let stem = args.scene.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy());
     let files = write_outputs(&plan, &solution, &args.out, &stem)?;
     if args.json {
@@ -75,6 +85,15 @@ fn print(report: &Report, solution: &Solution) {
     say!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
     let solver = &report.solver;
     say!("solver      {}, {} iterations, residual {:.1e}", solver.name, solver.iterations, solver.residual);
+    if let Some(time) = &report.time {
+        say!(
+            "time        {} in {} steps ({} rejected), {} matrices",
+            time.end,
+            time.steps,
+            time.rejected,
+            time.matrices
+        );
+    }
     if let Some(errors) = &report.errors {
         say!(
             "error       l2 {:.3e}, linf {:.3e}, gradient linf {:.3e}",

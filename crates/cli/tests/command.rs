@@ -175,7 +175,7 @@ fn a_wrong_scene_is_answered_with_file_line_and_key() {
         ("face = \"right\"", "face = \"top\"", &["face", "right"]),
         ("[[boundaries]]\nface = \"right\"\ndirichlet = \"0\"\n", "", &["no boundary condition"]),
         ("[[probes]]", "[[interfaces]]\nbetween = [\"left\", \"middle\"]\n\n[[probes]]", &["middle"]),
-        ("[output]", "[time]\nend = 1.0\n\n[output]", &["time", "not supported yet"]),
+        ("[output]", "[time]\nend = 0.0\n\n[output]", &["time.end", "positive"]),
         ("dirichlet = \"0\"", "dirichlet = \"log(0 - x)\"", &["dirichlet", "NaN"]),
     ];
     for (old, new, expected) in cases {
@@ -253,4 +253,37 @@ fn a_plan_of_too_many_nodes_is_refused_with_the_spacing_that_would_do() {
         assert!(text.contains("--spacing: about 1.000e12 nodes"), "{text}");
         assert!(text.contains("multiply the spacing by 52500"), "{text}");
     }
+}
+
+#[test]
+fn an_unsteady_scene_writes_its_fields_and_goes_on_from_its_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = SCENE.to_owned() + "\n[time]\nend = 0.1\noutput = [0.02]\ntolerance = 1e-3\n";
+    let (scene, out) = (scene_in(folder.path(), &text), folder.path().join("out"));
+    let checkpoint = folder.path().join("run.ckpt");
+    let run = || {
+        let output = meshless(&[
+            "solve",
+            scene.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+            "--json",
+            "--checkpoint",
+            checkpoint.to_str().unwrap(),
+        ]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let json = run();
+    assert!(json["time"]["steps"].as_u64().unwrap() > 3);
+    assert_eq!(json["time"]["output"][0], 0.02);
+    assert!(json["effects"].as_array().unwrap().contains(&"time".into()));
+    let series = std::fs::read_to_string(out.join("scene.pvd")).unwrap();
+    for file in ["scene-1.vtu", "scene.vtu"] {
+        assert!(series.contains(file) && out.join(file).is_file(), "{file}");
+    }
+    let steady = scene_in(folder.path(), SCENE);
+    let output = meshless(&["solve", steady.to_str().unwrap(), "--checkpoint", checkpoint.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("the scene is steady"));
 }

@@ -1,5 +1,7 @@
 //! What can go wrong between a scene and its solution.
 
+use std::path::PathBuf;
+
 use meshless_geometry::GeometryError;
 use meshless_interfaces::MethodError;
 use meshless_neighbors::NeighborError;
@@ -23,6 +25,23 @@ pub enum Error {
     /// Discretisation or solve.
     #[error("{0}")]
     Method(#[from] MethodError),
+    /// Time steps.
+    #[error("time steps: {0}")]
+    Time(String),
+    /// A checkpoint that cannot be gone on from.
+    #[error("checkpoint {path}: {reason}")]
+    Checkpoint {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
+    /// Whoever watches the progress asked to stop.
+    #[error("stopped at t = {t}")]
+    Stopped {
+        /// Time reached.
+        t: f64,
+    },
     /// Pictures and files.
     #[error("output: {0}")]
     Output(#[from] OutputError),
@@ -37,6 +56,6 @@ impl From<SceneError> for Error {
 impl Error {
     /// Whether the input is at fault, rather than the solve.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Scene(_))
+        matches!(self, Self::Scene(_) | Self::Checkpoint { .. })
     }
 }

@@ -75,7 +75,7 @@ pub mod report;
 pub mod scene;
 
 pub use error::Error;
-pub use execute::{Picture, Progress, Silent, Solution, execute};
+pub use execute::{Checkpoint, Frame, Picture, Progress, Silent, Solution, execute, execute_from};
 pub use field::NodalField;
 pub use methods::{METHODS, MethodInfo};
 pub use outputs::write_outputs;
@@ -89,6 +89,7 @@ pub use meshless_neighbors as neighbors;
 pub use meshless_output as output;
 pub use meshless_sparse as sparse;
 pub use meshless_stencils as stencils;
+pub use meshless_time as time;
 
 /// Nodes that a scene may have: about what fits into the memory of a large workstation.
 pub const MAX_NODES: usize = 20_000_000;

@@ -23,6 +23,9 @@ pub fn write_outputs(
         let path = folder.join(format!("{stem}.vtu"));
         vtu(solution, &path)?;
         files.push(path);
+        if let Some(time) = &solution.report.time {
+            files.extend(series(solution, time.end, folder, stem)?);
+        }
     }
     if let Some(picture) = &solution.picture {
         let path = folder.join(format!("{stem}.svg"));
@@ -32,12 +35,46 @@ pub fn write_outputs(
     Ok(files)
 }
 
+/// The fields before the end as `stem-1.vtu` and so on, and `stem.pvd`, by which ParaView knows their times.
+fn series(solution: &Solution, end: f64, folder: &Path, stem: &str) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    let mut entries = String::new();
+    let mut entry = |t: f64, file: &str| {
+        // A name of a file may have what XML does not let stand in an attribute.
+        let file = file.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;");
+        entries += &format!("    <DataSet timestep=\"{t}\" file=\"{file}\"/>\n");
+    };
+    for (k, frame) in (1..).zip(&solution.frames) {
+        let name = format!("{stem}-{k}.vtu");
+        write_vtu(
+            folder.join(&name),
+            &solution.field.points,
+            &[VtuField::scalars("u", frame.u.clone()), regions(solution)],
+        )?;
+        entry(frame.t, &name);
+        files.push(folder.join(name));
+    }
+    entry(end, &format!("{stem}.vtu"));
+    let path = folder.join(format!("{stem}.pvd"));
+    let text = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n{entries}  \
+         </Collection>\n</VTKFile>\n"
+    );
+    write_text_atomically(&path, &text)?;
+    files.push(path);
+    Ok(files)
+}
+
+fn regions(solution: &Solution) -> VtuField {
+    VtuField::integers("region", solution.field.region.iter().map(|&r| i64::from(r)).collect())
+}
+
 fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
     let field = &solution.field;
     let mut fields = vec![
         VtuField::scalars("u", field.u.clone()),
         VtuField::scalars("eta", field.eta.clone()),
-        VtuField::integers("region", field.region.iter().map(|&r| i64::from(r)).collect()),
+        regions(solution),
         VtuField::integers("row_kind", field.kind.iter().map(|&k| row_code(k)).collect()),
     ];
     if let Some(gradient) = &field.gradient {

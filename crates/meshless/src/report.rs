@@ -38,12 +38,30 @@ pub struct Report {
     pub nodes: NodeReport,
     /// Properties of the matrix.
     pub matrix: MatrixSummary,
+    /// How an unsteady scene was stepped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<TimeReport>,
     /// Wall-clock seconds of the stages.
     pub seconds: Seconds,
     /// Largest memory of the process so far, in units of 1e6 bytes; 0 where the system does not tell.
     pub peak_memory_mb: f64,
     /// Values at the probes.
     pub probes: Vec<Probe>,
+}
+
+/// The time steps of an unsteady scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct TimeReport {
+    /// The time at which it ends; all errors, probes and pictures are about this time.
+    pub end: f64,
+    /// Steps taken.
+    pub steps: usize,
+    /// Steps that were tried and rejected.
+    pub rejected: usize,
+    /// Matrices that were factored, or made a preconditioner for.
+    pub matrices: usize,
+    /// Times before the end at which the field was kept.
+    pub output: Vec<f64>,
 }
 
 /// Relative norms of the error; definitions in [`crate::norms`].

@@ -8,6 +8,6 @@ mod survey;
 
 pub(crate) use checks::{check_interfaces_touch, check_regions_are_met};
 pub(crate) use conditions::{Boundary, missing_condition};
-pub(crate) use fields::{exact, jumps, materials, nodal_diffusivity, nodal_source};
+pub(crate) use fields::{exact, field, jumps, materials, nodal_diffusivity, nodal_source};
 pub(crate) use shapes::{domain, explain_cloud, layout, regions, spacing, with_spacing_times};
 pub(crate) use survey::{estimated_nodes, is_curved, sampled_contrast};

@@ -97,6 +97,21 @@ impl<const D: usize> Discrete<D> {
         })
     }
 
+    /// Makes the data anew, as the scene has them at another time; nodes and regions stay.
+    pub(super) fn set_data(&mut self, scene: &Scene, plan: &Plan) -> Result<(), Error> {
+        let (points, labels) = (self.cloud.points(), &self.labels);
+        self.materials = build::materials::<D>(scene);
+        self.eta = build::nodal_diffusivity(scene, &self.materials, points, labels)?;
+        self.source = plan
+            .runs(Stage::Source)
+            .then(|| build::nodal_source(scene, &self.materials, points, labels))
+            .transpose()?;
+        self.boundary = Boundary::new(scene, &self.domain);
+        self.conditions = self.boundary.at_nodes(scene, &self.cloud)?;
+        self.jumps = build::jumps::<D>(scene);
+        Ok(())
+    }
+
     /// The problem as methods see it.
     pub(crate) fn problem(&self) -> Problem<'_, D> {
         Problem {

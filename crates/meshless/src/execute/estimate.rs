@@ -24,7 +24,7 @@ pub(super) fn against_coarser<const D: usize>(
     fine: &Solved<D>,
 ) -> Result<Estimate, Error> {
     let coarse_scene = build::with_spacing_times(scene, RATIO);
-    let coarse = match solve_in::<D>(&coarse_scene, &plan.companion(), &mut Silent) {
+    let coarse = match solve_in::<D>(&coarse_scene, &plan.companion(), None, &mut Silent) {
         Ok(coarse) => coarse,
         // A region or a gap that the coarser cloud does not resolve is no fault of the scene.
         Err(error) => {

@@ -5,6 +5,7 @@ mod estimate;
 mod measure;
 mod picture;
 mod summary;
+mod unsteady;
 
 use std::time::Instant;
 
@@ -16,11 +17,19 @@ use crate::scene::Scene;
 use crate::{Error, NodalField};
 pub(crate) use discrete::{Discrete, Exact};
 pub use picture::Picture;
+use unsteady::History;
+pub use unsteady::{Checkpoint, Frame};
 
 /// Told what is being done; for progress bars.
 pub trait Progress {
     /// A stage begins.
     fn stage(&mut self, stage: Stage);
+
+    /// The time steps have reached `t`, on the way to `end`. Whether to go on: otherwise the run ends with
+    /// [`Error::Stopped`], after its checkpoint has been written.
+    fn proceed(&mut self, _t: f64, _end: f64) -> bool {
+        true
+    }
 }
 
 /// Says nothing.
@@ -40,14 +49,26 @@ pub struct Solution {
     pub field: NodalField,
     /// The field as a picture, where the plan draws one.
     pub picture: Option<Picture>,
+    /// The field at the times before the end at which an unsteady scene asks for it.
+    pub frames: Vec<Frame>,
 }
 
 /// Solves a scene as its plan says.
 pub fn execute(scene: &Scene, plan: &Plan, progress: &mut dyn Progress) -> Result<Solution, Error> {
+    execute_from(scene, plan, None, progress)
+}
+
+/// The same; an unsteady scene goes on from the checkpoint, if its file exists, and keeps it up to date.
+pub fn execute_from(
+    scene: &Scene,
+    plan: &Plan,
+    checkpoint: Option<&Checkpoint>,
+    progress: &mut dyn Progress,
+) -> Result<Solution, Error> {
     match scene.dimension {
-        1 => execute_in::<1>(scene, plan, progress),
-        2 => execute_in::<2>(scene, plan, progress),
-        _ => execute_in::<3>(scene, plan, progress),
+        1 => execute_in::<1>(scene, plan, checkpoint, progress),
+        2 => execute_in::<2>(scene, plan, checkpoint, progress),
+        _ => execute_in::<3>(scene, plan, checkpoint, progress),
     }
 }
 
@@ -57,9 +78,22 @@ struct Solved<const D: usize> {
     discretization: Discretization,
     system: SystemSolution,
     seconds: Seconds,
+    history: Option<History>,
 }
 
 fn solve_in<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    checkpoint: Option<&Checkpoint>,
+    progress: &mut dyn Progress,
+) -> Result<Solved<D>, Error> {
+    match &scene.time {
+        Some(time) => unsteady::solve_in(scene, time, plan, checkpoint, progress),
+        None => solve_steady(scene, plan, progress),
+    }
+}
+
+fn solve_steady<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     progress: &mut dyn Progress,
@@ -78,16 +112,19 @@ fn solve_in<const D: usize>(
     let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
     let system = solve(&problem, &discretization, &params).map_err(|e| discrete.explain(scene, e))?;
     seconds.solve = start.elapsed().as_secs_f64();
-    Ok(Solved { discrete, discretization, system, seconds })
+    Ok(Solved { discrete, discretization, system, seconds, history: None })
 }
 
 fn execute_in<const D: usize>(
-    scene: &Scene,
+    whole: &Scene,
     plan: &Plan,
+    checkpoint: Option<&Checkpoint>,
     progress: &mut dyn Progress,
 ) -> Result<Solution, Error> {
     let start = Instant::now();
-    let mut solved = solve_in::<D>(scene, plan, progress)?;
+    let mut solved = solve_in::<D>(whole, plan, checkpoint, progress)?;
+    // All that follows is about the end.
+    let scene = &whole.time.as_ref().map_or_else(|| whole.clone(), |time| whole.at_time(time.end));
     let mut seconds = solved.seconds.clone();
     let post = Instant::now();
     let exact = plan.runs(Stage::Errors).then(|| solved.discrete.exact(scene)).transpose()?;
@@ -114,7 +151,7 @@ fn execute_in<const D: usize>(
     progress.stage(Stage::Estimate);
     let before = Instant::now();
     let estimate = if plan.runs(Stage::Estimate) {
-        estimate::against_coarser(scene, plan, &solved)?
+        estimate::against_coarser(whole, plan, &solved)?
     } else {
         Estimate { l2: None, why_not: Some("not asked for".to_owned()) }
     };
@@ -126,5 +163,6 @@ fn execute_in<const D: usize>(
     let kinds = &solved.discretization.kinds;
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    Ok(Solution { report, field, picture })
+    let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
+    Ok(Solution { report, field, picture, frames })
 }

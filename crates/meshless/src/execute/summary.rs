@@ -60,6 +60,7 @@ pub(super) fn report<const D: usize>(
             column_sum: rows.column_sum,
             overshoot: overshoot(plan, problem.conditions, min, max),
         },
+        time: solved.history.as_ref().map(|history| history.report.clone()),
         seconds,
         peak_memory_mb: peak_memory_mb().unwrap_or(0.0),
         probes,

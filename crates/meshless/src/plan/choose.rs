@@ -90,6 +90,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     let may_float = survey.contrast > FLOATING_CONTRAST;
     decide(may_float, Stage::FloatingConstants, "no region is much stiffer than its neighbours");
     decide(true, Stage::Solve, "");
+    decide(scene.time.is_some(), Stage::TimeSteps, "the scene is steady");
     decide(exact || scene.output.vtu, Stage::Gradient, "neither exact solution nor field output asks for it");
     decide(exact, Stage::Errors, "the scene has no exact solution");
     decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
@@ -105,7 +106,6 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     absent(survey.has_interface(), "interface", "nothing jumps anywhere");
     absent(survey.has(|e| matches!(e, Effect::ValueJump)), "value jump", "none is given");
     absent(survey.has(|e| matches!(e, Effect::FluxJump)), "flux jump", "none is given");
-    absent(false, "time", "the scene is steady");
     absent(false, "free space", "the domain is bounded");
     (stages, skipped)
 }

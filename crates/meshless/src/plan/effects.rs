@@ -30,6 +30,8 @@ pub enum Effect {
     Robin,
     /// Nothing fixes the constant of u.
     PureNeumann,
+    /// u changes with time.
+    Time,
     /// The domain has holes.
     Holes,
     /// The boundary is not a box.
@@ -51,6 +53,7 @@ impl Effect {
             Self::Flux => "flux boundary",
             Self::Robin => "robin boundary",
             Self::PureNeumann => "pure neumann",
+            Self::Time => "time",
             Self::Holes => "holes",
             Self::CurvedBoundary => "curved boundary",
             Self::GradedCloud => "graded cloud",
@@ -82,7 +85,7 @@ impl Survey {
         let constants: Vec<Option<f64>> =
             scene.regions.iter().map(|r| r.diffusivity.expr.as_constant()).collect();
         let uniform = constants[0].is_some() && constants.iter().all(|&c| c == constants[0]);
-        let contrast = if uniform { 1.0 } else { build::sampled_contrast(scene)? };
+        let contrast = if uniform { 1.0 } else { build::sampled_contrast(&scene.at_time(0.0))? };
         let mut effects = Vec::new();
         let mut note = |present: bool, effect: Effect| {
             if present {
@@ -102,6 +105,7 @@ impl Survey {
             !any(|c| matches!(c, ConditionSpec::Dirichlet(_) | ConditionSpec::Robin { .. })),
             Effect::PureNeumann,
         );
+        note(scene.time.is_some(), Effect::Time);
         note(!scene.holes.is_empty(), Effect::Holes);
         note(build::is_curved(scene), Effect::CurvedBoundary);
         note(scene.points.spacing.expr.as_constant().is_none(), Effect::GradedCloud);

@@ -79,6 +79,8 @@ pub enum Stage {
     FloatingConstants,
     /// Solve the linear system.
     Solve,
+    /// Step through time.
+    TimeSteps,
     /// The gradient at the nodes.
     Gradient,
     /// Errors against the exact solution.

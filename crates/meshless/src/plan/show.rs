@@ -23,6 +23,7 @@ impl Stage {
             Self::Assembly => "assembly",
             Self::FloatingConstants => "floating constants",
             Self::Solve => "solve",
+            Self::TimeSteps => "time",
             Self::Gradient => "gradient",
             Self::Errors => "errors",
             Self::Probes => "probes",

@@ -37,6 +37,7 @@ pub use spec::{
 };
 
 pub use time::TimeSpec;
+pub(crate) use time::Varying;
 
 use source::Source;
 

@@ -93,6 +93,11 @@ impl Place {
     }
 
     /// The same key with other bytes of it.
+    /// The whole file.
+    pub(crate) fn source_text(&self) -> &str {
+        &self.source.text
+    }
+
     pub(super) fn at(&self, span: Range<usize>) -> Self {
         Self { span, ..self.clone() }
     }

@@ -80,7 +80,7 @@ impl Scene {
         for BoundarySpec { condition, .. } in &mut scene.boundaries {
             match condition {
                 ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => {
-                    *f = at(f)
+                    *f = at(f);
                 }
                 ConditionSpec::Robin { a, b, g } => [a, b, g].into_iter().for_each(|f| *f = at(f)),
             }

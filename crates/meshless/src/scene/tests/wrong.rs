@@ -25,7 +25,7 @@ fn root() {
             wrong("dimension = 2", "dimension = «4»", "dimension", "an integer from 1 to 3, found 4", ""),
             wrong("dimension = 2", "dimension = «\"2\"»", "dimension", "1 to 3, found a string", ""),
             wrong("[output]", "[«outputs»]", "outputs", "unknown key", "did you mean `output`?"),
-            wrong("[output]", "«[time]»\nend = 1.0\n[output]", "time", "not supported yet", "steady"),
+            wrong("[output]", "[time]\nend = «0»\n[output]", "time.end", "expected a positive", ""),
             wrong(
                 "[output]",
                 "«[accuracy]»\ntolerance = 1e-3\n[output]",

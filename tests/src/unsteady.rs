@@ -1,0 +1,99 @@
+//! Problems that change with time and whose solution is known.
+
+/// `u = exp(-pi^2 eta t) sin(pi x)` on the unit interval or square, u = 0 at both ends, insulated on the other sides.
+pub fn slab(dimension: usize, spacing: f64, tolerance: f64) -> String {
+    let eta = 0.3;
+    let rate = eta * std::f64::consts::PI.powi(2);
+    format!(
+        "title = \"Slab\"\ndimension = {dimension}\n{}[points]\nspacing = {spacing}\nseed = 1\n\n\
+         [[regions]]\nname = \"slab\"\ndiffusivity = {eta}\nexact = \"exp(-{rate}*t)*sin(pi*x)\"\n\n{}\
+         [time]\nend = 0.4\ntolerance = {tolerance}\ninitial = \"sin(pi*x)\"\n\n",
+        unit_box(dimension),
+        ends_at_zero(dimension)
+    )
+}
+
+/// A ball of radius 1 that cools from `sin(pi r)/r` by its surface at 0: `u = exp(-pi^2 t) sin(pi r)/r`.
+pub fn ball(spacing: f64, tolerance: f64) -> String {
+    let shape = "if(x^2 + y^2 + z^2 < 1e-12, pi, sin(pi*sqrt(x^2 + y^2 + z^2))/sqrt(x^2 + y^2 + z^2))";
+    format!(
+        "title = \"Ball\"\ndimension = 3\n[domain]\nsphere = {{ center = [0.0, 0.0, 0.0], radius = 1.0 }}\n\n\
+         [points]\nspacing = {spacing}\nseed = 1\n\n\
+         [[regions]]\nname = \"ball\"\ndiffusivity = 1\nexact = \"exp(-pi^2*t)*{shape}\"\n\n\
+         [[boundaries]]\nface = \"all\"\ndirichlet = 0\n\n\
+         [time]\nend = 0.1\ntolerance = {tolerance}\ninitial = \"{shape}\"\n"
+    )
+}
+
+/// Two materials in contact at x = 0.4: the slowest mode of a slab whose ends are kept at 0.
+///
+/// With `k_i = sqrt(rate/eta_i)`, u is `sin(k_1 x)` on the left and `B sin(k_2 (1 - x))` on the right, times
+/// `exp(-rate t)`; continuity of u and of the flux at the contact determine B and the rate.
+pub fn composite(dimension: usize, spacing: f64, contrast: f64, tolerance: f64) -> String {
+    let (a, eta) = (0.4, [1.0, contrast]);
+    let rate = composite_rate(a, eta);
+    let k = eta.map(|eta| (rate / eta).sqrt());
+    let b = (k[0] * a).sin() / (k[1] * (1.0 - a)).sin();
+    let (left, right) = (format!("sin({}*x)", k[0]), format!("{b}*sin({}*(1 - x))", k[1]));
+    format!(
+        "title = \"Composite slab\"\ndimension = {dimension}\n{}[points]\nspacing = {spacing}\nseed = 1\n\n\
+         [[regions]]\nname = \"left\"\nlevel_set = \"x - {a}\"\ndiffusivity = 1\nexact = \"exp(-{rate}*t)*{left}\"\n\n\
+         [[regions]]\nname = \"right\"\ndiffusivity = {contrast:e}\nexact = \"exp(-{rate}*t)*{right}\"\n\n{}\
+         [time]\nend = {}\ntolerance = {tolerance}\ninitial = \"if(x < {a}, {left}, {right})\"\n\n",
+        unit_box(dimension),
+        ends_at_zero(dimension),
+        1.0 / rate,
+    )
+}
+
+/// The smallest positive rate at which `eta_1 k_1 cot(k_1 a) + eta_2 k_2 cot(k_2 (1 - a))` vanishes, by bisection: the
+/// sum falls from infinity to minus infinity between 0 and the first pole of either term.
+fn composite_rate(a: f64, eta: [f64; 2]) -> f64 {
+    let lengths = [a, 1.0 - a];
+    let excess = |rate: f64| -> f64 {
+        (0..2)
+            .map(|i| {
+                let k = (rate / eta[i]).sqrt();
+                eta[i] * k / (k * lengths[i]).tan()
+            })
+            .sum()
+    };
+    let pole = |i: usize| eta[i] * (std::f64::consts::PI / lengths[i]).powi(2);
+    let (mut low, mut high) = (0.0, pole(0).min(pole(1)));
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// `u = cos(3 t) (x^2 + 2 x + y)`: exact in space for stencils of degree 2. Source, boundary values, Robin data and the
+/// diffusivity depend on time.
+pub fn driven(tolerance: f64) -> String {
+    let eta = "(1 + 0.5*sin(t))";
+    format!(
+        "title = \"Driven\"\ndimension = 2\n[domain]\nbox = {{ min = [0.0, 0.0], max = [1.0, 1.0] }}\n\n\
+         [points]\nspacing = 0.1\nseed = 1\n\n\
+         [[regions]]\nname = \"square\"\ndiffusivity = \"{eta}\"\n\
+         source = \"-3*sin(3*t)*(x^2 + 2*x + y) - 2*{eta}*cos(3*t)\"\nexact = \"cos(3*t)*(x^2 + 2*x + y)\"\n\n\
+         [[boundaries]]\nface = \"right\"\nrobin = {{ a = 1, b = 1, g = \"cos(3*t)*(3 + y) + {eta}*cos(3*t)*4\" }}\n\n\
+         [[boundaries]]\nface = \"top\"\nneumann = \"cos(3*t)\"\n\n\
+         [[boundaries]]\nface = \"all\"\ndirichlet = \"cos(3*t)*(x^2 + 2*x + y)\"\n\n\
+         [method]\nname = \"gfdm-classical\"\n\n\
+         [time]\nend = 1.0\ntolerance = {tolerance}\ninitial = \"x^2 + 2*x + y\"\n\n"
+    )
+}
+
+fn unit_box(dimension: usize) -> String {
+    let corner = |x: &str| vec![x; dimension].join(", ");
+    format!("[domain]\nbox = {{ min = [{}], max = [{}] }}\n\n", corner("0.0"), corner("1.0"))
+}
+
+fn ends_at_zero(dimension: usize) -> String {
+    let mut text = "[[boundaries]]\nface = \"left\"\ndirichlet = 0\n\n[[boundaries]]\nface = \"right\"\ndirichlet = 0\n\n"
+        .to_owned();
+    if dimension > 1 {
+        text += "[[boundaries]]\nface = \"all\"\nneumann = 0\n\n";
+    }
+    text
+}

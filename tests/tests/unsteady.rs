@@ -1,0 +1,150 @@
+//! Diffusion in time: orders in time and space, data that change, stopped runs.
+
+use std::time::Duration;
+
+use meshless::plan::{Plan, Stage};
+use meshless::scene::{MethodName, Scene};
+use meshless::{Checkpoint, Error, Progress, Silent, Solution, execute_from};
+use meshless_tests::order::observed;
+use meshless_tests::solve::{solve_scene, solve_with};
+use meshless_tests::unsteady::{ball, composite, driven, slab};
+
+fn l2(solution: &Solution) -> f64 {
+    solution.report.errors.as_ref().expect("the scene has an exact solution").l2
+}
+
+fn solved(text: &str) -> Solution {
+    solve_scene(&Scene::parse(text, "gallery.toml").expect("it parses")).expect("it can be solved")
+}
+
+/// Space is exact here, so all of the error is that of the steps.
+#[test]
+fn the_error_falls_with_the_square_of_the_number_of_steps() {
+    let run = |tolerance| {
+        let solution = solved(&driven(tolerance));
+        let steps = solution.report.time.as_ref().expect("it is unsteady").steps;
+        (1.0 / steps as f64, l2(&solution))
+    };
+    let ladder = [1e-2, 1e-3, 1e-4, 1e-5].map(run);
+    let order = observed(&ladder);
+    assert!((1.8..2.4).contains(&order), "order {order}: {ladder:?}");
+    for ((_, error), tolerance) in ladder.iter().zip([1e-2, 1e-3, 1e-4, 1e-5]) {
+        assert!(*error < tolerance, "{error:e} for a tolerance of {tolerance:e}");
+    }
+}
+
+#[test]
+fn the_order_in_space_is_kept() {
+    let ladder = |spacings: &[f64], text: &dyn Fn(f64) -> String| -> Vec<(f64, f64)> {
+        spacings.iter().map(|&h| (h, l2(&solved(&text(h))))).collect()
+    };
+    for (least, ladder) in [
+        (1.7, ladder(&[0.05, 0.025, 0.0125], &|h| slab(1, h, 1e-6))),
+        (1.6, ladder(&[0.1, 0.05, 0.025], &|h| slab(2, h, 1e-5))),
+        (1.6, ladder(&[0.25, 0.18, 0.125], &|h| ball(h, 1e-4))),
+    ] {
+        let order = observed(&ladder);
+        assert!(order > least, "order {order}: {ladder:?}");
+    }
+}
+
+#[test]
+fn two_materials_in_contact() {
+    for contrast in [1e-2, 10.0, 1e6] {
+        for (dimension, spacings) in [(1, &[0.04, 0.02, 0.01][..]), (2, &[0.1, 0.05, 0.025])] {
+            let run = |&h: &f64| (h, l2(&solved(&composite(dimension, h, contrast, 1e-5))));
+            let ladder: Vec<(f64, f64)> = spacings.iter().map(run).collect();
+            let order = observed(&ladder);
+            assert!(
+                order > 0.9 && ladder[2].1 < 0.03,
+                "{dimension}-D, contrast {contrast:e}: order {order}, {ladder:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_method_steps() {
+    for method in [
+        MethodName::GfdmClassical,
+        MethodName::GfdmConservative,
+        MethodName::GfdmHybrid,
+        MethodName::GfdmPositive,
+        MethodName::ParticleDifference,
+    ] {
+        let error = l2(&solve_with(&slab(2, 0.05, 1e-4), method).expect("it can be solved"));
+        assert!(error < 1e-2, "{method:?}: {error:e}");
+    }
+}
+
+/// Stops when a time has been reached.
+struct Until(f64);
+
+impl Progress for Until {
+    fn stage(&mut self, _stage: Stage) {}
+
+    fn proceed(&mut self, t: f64, _end: f64) -> bool {
+        t < self.0
+    }
+}
+
+#[test]
+fn a_stopped_run_goes_on_to_the_same_result() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = slab(2, 0.1, 1e-4).replace("end = 0.4", "end = 0.4\noutput = [0.1, 0.2]");
+    let scene = Scene::parse(&text, "slab.toml").expect("it parses");
+    let mut plan = Plan::new(&scene).expect("it can be planned");
+    plan.stages.retain(|s| *s != Stage::Estimate);
+    let checkpoint = Checkpoint { path: folder.path().join("run.ckpt"), every: Duration::ZERO };
+    let through = execute_from(&scene, &plan, None, &mut Silent).expect("it can be solved");
+    for stop in [0.05, 0.15, 0.3] {
+        let stopped = execute_from(&scene, &plan, Some(&checkpoint), &mut Until(stop));
+        assert!(matches!(stopped, Err(Error::Stopped { t }) if t >= stop), "{stop}");
+    }
+    let resumed = execute_from(&scene, &plan, Some(&checkpoint), &mut Silent).expect("it can be solved");
+    let bits = |u: &[f64]| u.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+    assert_eq!(bits(&resumed.field.u), bits(&through.field.u));
+    assert_eq!(resumed.frames, through.frames);
+    assert_eq!(through.frames.iter().map(|f| f.t).collect::<Vec<_>>(), [0.1, 0.2]);
+    let (one, two) = (resumed.report.time.expect("unsteady"), through.report.time.expect("unsteady"));
+    assert_eq!((one.steps, one.rejected), (two.steps, two.rejected));
+
+    let other = Scene::parse(&text.replace("end = 0.4", "end = 0.5"), "slab.toml").expect("it parses");
+    let refused = execute_from(&other, &plan, Some(&checkpoint), &mut Silent);
+    assert!(matches!(&refused, Err(e @ Error::Checkpoint { .. }) if e.to_string().contains("another scene")));
+    std::fs::write(&checkpoint.path, "meshless checkpoint 1\n").expect("written");
+    assert!(matches!(
+        execute_from(&scene, &plan, Some(&checkpoint), &mut Silent),
+        Err(Error::Checkpoint { .. })
+    ));
+}
+
+#[test]
+fn a_steady_scene_builds_no_steps_and_an_unsteady_one_says_so() {
+    let unsteady = Scene::parse(&slab(1, 0.1, 1e-3), "slab.toml").expect("it parses");
+    assert!(Plan::new(&unsteady).expect("a plan").runs(Stage::TimeSteps));
+    let steady = slab(1, 0.1, 1e-3).replace("exp(-2.9608813203268074*t)*", "");
+    let steady = Scene::parse(steady.split("[time]").next().expect("text"), "slab.toml").expect("it parses");
+    let plan = Plan::new(&steady).expect("a plan");
+    assert!(!plan.runs(Stage::TimeSteps) && plan.skipped.iter().any(|s| s.what == "time"));
+}
+
+#[test]
+fn what_is_wrong_with_time_is_said_with_its_place() {
+    let text = slab(1, 0.1, 1e-3);
+    for (from, to, message) in [
+        ("end = 0.4", "end = -1", "time.end"),
+        ("end = 0.4", "", "time.end: the key is missing"),
+        ("tolerance = 0.001", "tolerance = 0", "time.tolerance"),
+        ("end = 0.4", "end = 0.4\noutput = [0.3, 0.2]", "expected a time between 0.3 and 0.4, found 0.2"),
+        ("spacing = 0.1", "spacing = \"0.1 + t\"", "`t`"),
+        ("initial = \"sin(pi*x)\"", "initial = \"t\"", "`t`"),
+        ("initial = \"sin(pi*x)\"", "start = 1", "unknown key"),
+    ] {
+        let error = Scene::parse(&text.replace(from, to), "slab.toml").expect_err(to).to_string();
+        assert!(error.contains(message), "{to}: {error}");
+    }
+    let singular = text.replace("initial = \"sin(pi*x)\"", "initial = \"log(x - 0.5)\"");
+    let error = solve_scene(&Scene::parse(&singular, "slab.toml").expect("it parses")).expect_err("singular");
+    assert!(error.to_string().contains("the initial value is"), "{error}");
+}
