@@ -20,6 +20,23 @@ pub enum MethodError {
         /// What the fit said.
         source: StencilError,
     },
+    /// The nodes near an interface do not determine the polynomials of its sides.
+    #[error(
+        "the {nodes} nodes round node {node} (near {position:?}) do not resolve what is there (the fit reproduces its \
+         value up to {remainder:.1e}): a gap or a layer needs a spacing of about {spacing:.2e}, or a lower order"
+    )]
+    Unresolved {
+        /// The node.
+        node: usize,
+        /// Its coordinates.
+        position: Vec<f64>,
+        /// Nodes of the largest stencil that was tried.
+        nodes: usize,
+        /// What is left of the reproduction of the value.
+        remainder: f64,
+        /// A spacing that may do.
+        spacing: f64,
+    },
     /// A Voronoi cell could not be closed.
     #[error("no Voronoi cell at node {node} (near {position:?}): {source}")]
     Cell {

@@ -56,6 +56,7 @@ pub mod particle_difference;
 mod problem;
 mod row_report;
 mod sample;
+pub mod sharp;
 mod support_values;
 mod system;
 
@@ -63,7 +64,7 @@ pub use adjacency::adjacent_pairs;
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
 pub use error::MethodError;
 pub use field::{Field, ScalarField};
-pub use method::{Counts, Discretization, Method, RowKind};
+pub use method::{Counts, Discretization, Method, RowKind, SplitRows};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};

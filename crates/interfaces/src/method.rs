@@ -1,6 +1,6 @@
 //! What a method is: a function from a discretised problem to a linear system, with the way back to a field.
 
-use meshless_sparse::DifferenceMatrix;
+use meshless_sparse::{DifferenceMatrix, Split};
 
 use crate::{MethodError, Problem, gradient};
 
@@ -25,6 +25,9 @@ pub struct Discretization {
     pub rows: DifferenceMatrix,
     /// Right-hand side b.
     pub rhs: Vec<f64>,
+    /// Where a method splits off the constants of stiff regions itself: what its rows act on. `None` for rows in
+    /// nodal values, whose constants the shared layer splits off.
+    pub constants: Option<SplitRows>,
     /// How every row was made.
     pub kinds: Vec<RowKind>,
     /// Measure that belongs to every node: the volume of its cell where there is one, else `spacing^D`.
@@ -33,6 +36,16 @@ pub struct Discretization {
     pub counts: Counts,
     /// Wall-clock seconds spent on stencils and cells, before assembly.
     pub stencil_seconds: f64,
+}
+
+/// Rows that act on `w` and `C` of `u_i = sum_K sigma_K C_K + s_i w_i` in place of nodal values: methods whose stencils
+/// weigh the sides of an interface against each other must know the scales before they make a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SplitRows {
+    /// The change of unknowns over all nodes; prescribed nodes have scale 1 and no constant.
+    pub split: Split,
+    /// Coefficients of every `C_K`: row, value.
+    pub columns: Vec<Vec<(u32, f64)>>,
 }
 
 /// How the row of a node was made.

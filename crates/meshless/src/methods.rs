@@ -58,4 +58,12 @@ pub const METHODS: &[MethodInfo] = &[
                  conditions: second order and more up to the interface, jumps of u and of the flux; three regions must \
                  not meet; no maximum principle, not conservative",
     },
+    MethodInfo {
+        name: "sharp",
+        order: "4-12 / 4-12",
+        dimensions: "1, 2, 3",
+        limits: "one polynomial for each region of a stencil, the equation and the interface conditions built in: the \
+                 order of the polynomials (`order`, even) at any contrast; no maximum principle, not conservative, \
+                 steady scenes only",
+    },
 ];

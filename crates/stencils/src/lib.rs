@@ -56,6 +56,7 @@ pub use error::StencilError;
 pub use fit::{FitDiagnosis, FitParams, LocalFit, REPRODUCTION_TOLERANCE};
 pub use functional::Functional;
 pub use monomials::Monomials;
+pub use qr::Qr;
 pub use scratch::FitScratch;
 pub use set::{StencilSet, build_stencils};
 pub use weight::Weight;

@@ -4,8 +4,23 @@
 //! buffers have their size.
 
 /// A factorisation `A P = Q R` of an n x m matrix, n >= 1.
+///
+/// ```
+/// use meshless_stencils::Qr;
+///
+/// // The line through (0, 1), (1, 2) and (2, 3), at 3: which combination of the three values is it?
+/// let mut qr = Qr::default();
+/// qr.resize(3, 2);
+/// qr.column_mut(0).fill(1.0);
+/// qr.column_mut(1).copy_from_slice(&[0.0, 1.0, 2.0]);
+/// assert!(qr.factor(1e-12));
+/// let (mut z, mut y) = ([0.0; 2], [0.0; 3]);
+/// qr.least_norm(&[1.0, 3.0], &mut z, &mut y);
+/// let value: f64 = y.iter().zip([1.0, 2.0, 3.0]).map(|(y, f)| y * f).sum();
+/// assert!((value - 4.0).abs() < 1e-14);
+/// ```
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Qr {
+pub struct Qr {
     rows: usize,
     columns: usize,
     /// Column-major; Householder vectors below the diagonal (their first entry is 1), R above it.
@@ -19,7 +34,7 @@ pub(crate) struct Qr {
 
 impl Qr {
     /// Room for a matrix; the caller fills [`Qr::column_mut`] and factors.
-    pub(crate) fn resize(&mut self, rows: usize, columns: usize) {
+    pub fn resize(&mut self, rows: usize, columns: usize) {
         self.rows = rows;
         self.columns = columns;
         self.a.resize(rows * columns, 0.0);
@@ -30,12 +45,13 @@ impl Qr {
         self.pivots.extend(0..columns);
     }
 
-    pub(crate) fn column_mut(&mut self, column: usize) -> &mut [f64] {
+    /// A column of the matrix; after factoring, of what is stored in its place.
+    pub fn column_mut(&mut self, column: usize) -> &mut [f64] {
         &mut self.a[column * self.rows..(column + 1) * self.rows]
     }
 
     /// Column `column` becomes column `parent`, which comes before it, times a coordinate of the points in units.
-    pub(crate) fn multiply_column<const D: usize>(
+    pub fn multiply_column<const D: usize>(
         &mut self,
         parent: usize,
         column: usize,
@@ -50,23 +66,25 @@ impl Qr {
         }
     }
 
-    pub(crate) fn columns(&self) -> usize {
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
         self.columns
     }
 
-    pub(crate) fn rank(&self) -> usize {
+    /// Columns that were found to be independent.
+    pub fn rank(&self) -> usize {
         self.rank
     }
 
     /// Largest over smallest diagonal entry of R within the rank.
-    pub(crate) fn condition(&self) -> f64 {
+    pub fn condition(&self) -> f64 {
         let within = self.diagonal[..self.rank].iter().map(|d| d.abs());
         let (low, high) = within.fold((f64::INFINITY, 0.0_f64), |(l, h), d| (l.min(d), h.max(d)));
         if high > 0.0 { high / low } else { f64::INFINITY }
     }
 
     /// Factors without pivoting; false where a diagonal entry of R falls below `tolerance` times the largest.
-    pub(crate) fn factor(&mut self, tolerance: f64) -> bool {
+    pub fn factor(&mut self, tolerance: f64) -> bool {
         if self.rows < self.columns {
             return false;
         }
@@ -81,7 +99,7 @@ impl Qr {
     }
 
     /// Factors with column pivoting, and stops at the first column below `tolerance` times the largest.
-    pub(crate) fn factor_pivoted(&mut self, tolerance: f64) {
+    pub fn factor_pivoted(&mut self, tolerance: f64) {
         self.rank = 0;
         let mut largest = 0.0_f64;
         for k in 0..self.columns.min(self.rows) {
@@ -135,7 +153,7 @@ impl Qr {
 
     /// Solves `R^T z = P^T b` with the first rows of R, writes `Q z` to `y`, and returns the largest remainder of the
     /// equations beyond the rank: how far the right-hand side is from what the columns can represent.
-    pub(crate) fn least_norm(&self, b: &[f64], z: &mut [f64], y: &mut [f64]) -> f64 {
+    pub fn least_norm(&self, b: &[f64], z: &mut [f64], y: &mut [f64]) -> f64 {
         let rows = self.rows;
         let mut remainder = 0.0_f64;
         for j in 0..self.columns {
@@ -157,7 +175,7 @@ impl Qr {
     }
 
     /// `x <- Q^T x`; the entries from the rank on are the part that the columns do not reach.
-    pub(crate) fn apply_transpose(&self, x: &mut [f64]) {
+    pub fn apply_transpose(&self, x: &mut [f64]) {
         let rows = self.rows;
         for k in 0..self.rank {
             apply(&self.a[k * rows + k..(k + 1) * rows], self.tau[k], &mut x[k..rows]);
@@ -165,7 +183,7 @@ impl Qr {
     }
 
     /// Solves `R (P^T x) = y` with the rows within the rank; the entries beyond the rank are zero.
-    pub(crate) fn back_substitute(&self, y: &[f64], x: &mut [f64]) {
+    pub fn back_substitute(&self, y: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         for k in (0..self.rank).rev() {
             let later = (k + 1..self.rank).map(|j| self.a[j * self.rows + k] * x[self.pivots[j]]);
@@ -176,7 +194,7 @@ impl Qr {
     /// Writes the projection of the unit vector `entry` onto the complement of the columns to `y`.
     ///
     /// It is made of what `Q^T e` has beyond the rank, not as a difference that could cancel.
-    pub(crate) fn complement(&self, entry: usize, y: &mut [f64]) {
+    pub fn complement(&self, entry: usize, y: &mut [f64]) {
         let rows = self.rows;
         y.fill(0.0);
         y[entry] = 1.0;

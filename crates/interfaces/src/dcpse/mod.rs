@@ -51,9 +51,17 @@ impl<const D: usize> Method<D> for ImmersedInterface {
             cells: 0,
         };
         table.rows().iter().for_each(|&i| kinds[i as usize] = RowKind::Constrained);
-        Rows { problem, kinds: &kinds, known: &known, operators: &operators, table: &table }
-            .assemble()
-            .map(|(rows, rhs, volumes)| Discretization { rows, rhs, kinds, volumes, counts, stencil_seconds })
+        Rows { problem, kinds: &kinds, known: &known, operators: &operators, table: &table }.assemble().map(
+            |(rows, rhs, volumes)| Discretization {
+                rows,
+                rhs,
+                constants: None,
+                kinds,
+                volumes,
+                counts,
+                stencil_seconds,
+            },
+        )
     }
 }
 

@@ -151,5 +151,5 @@ fn assemble<const D: usize>(
         ..Counts::default()
     };
     let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();
-    Ok(Discretization { rows: matrix, rhs, kinds, volumes, counts, stencil_seconds })
+    Ok(Discretization { rows: matrix, rhs, constants: None, kinds, volumes, counts, stencil_seconds })
 }

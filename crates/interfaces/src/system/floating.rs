@@ -12,6 +12,31 @@ pub(super) struct Floating {
     pub(super) free: Option<usize>,
 }
 
+/// The connected parts of the regions, and which sets of them float.
+#[derive(Debug)]
+pub(crate) struct FloatingParts {
+    /// Connected parts and who touches whom.
+    pub(crate) graph: RegionGraph,
+    /// What floats; empty where nothing does.
+    pub(crate) clusters: Vec<Cluster>,
+}
+
+impl FloatingParts {
+    pub(crate) fn find<const D: usize>(problem: &Problem<'_, D>) -> Result<Self, MethodError> {
+        let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
+        let graph = RegionGraph::new(problem.cloud, problem.labels, &pairs)?;
+        if !levels_differ(problem) {
+            return Ok(Self { graph, clusters: Vec::new() });
+        }
+        let count = graph.components().len();
+        let mut components = component_infos(problem, &graph);
+        let mut adjacency: Vec<Vec<u32>> = (0..count as u32).map(|c| graph.touching(c).to_vec()).collect();
+        add_surroundings(problem, &graph, &mut components, &mut adjacency);
+        let clusters = clusters(&components, &adjacency, DEFAULT_THRESHOLD);
+        Ok(Self { graph, clusters })
+    }
+}
+
 /// The change of unknowns for a problem; `None` where nothing floats. `nodes` names the node of every unknown.
 pub(super) fn split<const D: usize>(
     problem: &Problem<'_, D>,
@@ -21,13 +46,8 @@ pub(super) fn split<const D: usize>(
     if !levels_differ(problem) {
         return Ok(None);
     }
-    let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
-    let graph = RegionGraph::new(problem.cloud, problem.labels, &pairs)?;
+    let FloatingParts { graph, clusters: found } = FloatingParts::find(problem)?;
     let count = graph.components().len();
-    let mut components = component_infos(problem, &graph);
-    let mut adjacency: Vec<Vec<u32>> = (0..count as u32).map(|c| graph.touching(c).to_vec()).collect();
-    add_surroundings(problem, &graph, &mut components, &mut adjacency);
-    let found = clusters(&components, &adjacency, DEFAULT_THRESHOLD);
     if found.is_empty() {
         return Ok(None);
     }

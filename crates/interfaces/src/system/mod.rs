@@ -1,12 +1,14 @@
 //! The layer below all methods: prescribed values, floating constants, the linear solver.
 
 mod floating;
+mod given;
 mod prepared;
 
 use meshless_sparse::{SolveInfo, SolverParams, Split};
 
 use crate::{Discretization, MethodError, Problem};
 use floating::Floating;
+pub(crate) use floating::FloatingParts;
 pub use prepared::PreparedSystem;
 
 /// Part of sources and fluxes that may be left over in a pure Neumann problem, relative to their size: a scene that
@@ -53,6 +55,9 @@ pub fn solve<const D: usize>(
 ) -> Result<SystemSolution, MethodError> {
     // A face without nodes of its own is seen by the cells of inner nodes only.
     let rows = &discretization.rows;
+    if let Some(constants) = &discretization.constants {
+        return given::solve(problem, discretization, constants, params);
+    }
     if !problem.is_anchored() && (0..rows.n()).all(|i| rows.row_sum(i) == 0.0) {
         return solve_unanchored(problem, discretization, params);
     }
@@ -71,7 +76,6 @@ fn solve_unanchored<const D: usize>(
     params: &SystemParams,
 ) -> Result<SystemSolution, MethodError> {
     let (rows, rhs, volumes) = (&discretization.rows, &discretization.rhs, &discretization.volumes);
-    let size: f64 = rhs.iter().map(|b| b.abs()).sum();
     let nodes: Vec<u32> = (0..rows.n() as u32).collect();
     let floating = match params.split_floating {
         true => floating::split(problem, rows, &nodes)?,
@@ -85,13 +89,25 @@ fn solve_unanchored<const D: usize>(
     let solved = split.apply_neumann(rows, rhs, volumes, pin)?.solve(&params.solver)?;
     let (mut u, info) = (split.recover(&solved.values, &solved.extra)?, solved.info);
     let floating_constants = split.extra();
-    let lambda = solved.extra[floating_constants];
-    let total: f64 = volumes.iter().sum();
+    check_balance(discretization, solved.extra[floating_constants])?;
+    center(&mut u, volumes);
+    Ok(SystemSolution { u, info, floating_constants, up_to_constant: true })
+}
+
+/// Whether sources and fluxes balance: `lambda` times the volumes had to be added.
+fn check_balance(discretization: &Discretization, lambda: f64) -> Result<(), MethodError> {
+    let size: f64 = discretization.rhs.iter().map(|b| b.abs()).sum();
+    let total: f64 = discretization.volumes.iter().sum();
     let defect = if size > 0.0 { (lambda * total / size).abs() } else { 0.0 };
     if defect.is_nan() || defect > COMPATIBILITY {
         return Err(MethodError::Incompatible { defect });
     }
+    Ok(())
+}
+
+/// Makes the mean zero.
+fn center(u: &mut [f64], volumes: &[f64]) {
+    let total: f64 = volumes.iter().sum();
     let mean = u.iter().zip(volumes).map(|(u, v)| u * v).sum::<f64>() / total;
     u.iter_mut().for_each(|u| *u -= mean);
-    Ok(SystemSolution { u, info, floating_constants, up_to_constant: true })
 }

@@ -3,7 +3,7 @@
 use meshless_sparse::{PreconditionerKind, SolverKind, SolverParams};
 
 use super::effects::{Effect, Survey};
-use super::{MethodParams, MethodPlan, Skipped, Stage};
+use super::{MethodParams, MethodPlan, Skipped, Stage, method};
 use crate::Error;
 use crate::scene::{MethodName, Scene, SolverName};
 
@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 1e-11;
 /// Contrast above which a region may be stiff enough for its constant to be split off.
 pub(super) const FLOATING_CONTRAST: f64 = 10.0;
 
-pub(super) fn method(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error> {
+pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error> {
     let (name, why) = match scene.method.name {
         MethodName::Auto if survey.has_interface() => (
             MethodName::GfdmHybrid,
@@ -29,6 +29,7 @@ pub(super) fn method(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error
         MethodName::Auto => (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned()),
         name => (name, "asked for by the scene".to_owned()),
     };
+    method::check(name, scene)?;
     let params = MethodParams::new(name, scene, survey);
     let dimension = scene.dimension;
     let wanted = params.support(dimension).unwrap_or(SUPPORT[dimension - 1]);

@@ -110,7 +110,7 @@ impl Plan {
     /// Works out the plan of a scene.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let survey = effects::Survey::of(scene)?;
-        let method = choose::method(scene, &survey)?;
+        let method = choose::method_plan(scene, &survey)?;
         let predicted = predict::predict(scene, &survey, &method)?;
         let solver = choose::solver(scene, predicted.unknowns);
         let (stages, skipped) = choose::stages(scene, &survey, &method);

@@ -9,11 +9,14 @@ use super::spec::{MethodName, MethodOptions, MethodSpec, SolverName, WedgeName, 
 /// Lowest and highest polynomial degree of stencils.
 const ORDERS: [u64; 2] = [2, 8];
 
+/// The same for the sharp method, whose orders are even.
+const SHARP_ORDERS: [u64; 2] = [4, 16];
+
 /// Most smoothing cycles; the diffusivity is flat long before.
 const MAX_SMOOTHING: u64 = 100;
 
 /// Methods by name.
-const METHODS: [(&str, MethodName); 7] = [
+const METHODS: [(&str, MethodName); 8] = [
     ("auto", MethodName::Auto),
     ("gfdm-classical", MethodName::GfdmClassical),
     ("gfdm-conservative", MethodName::GfdmConservative),
@@ -21,10 +24,11 @@ const METHODS: [(&str, MethodName); 7] = [
     ("gfdm-hybrid", MethodName::GfdmHybrid),
     ("particle-difference", MethodName::ParticleDifference),
     ("immersed-interface", MethodName::ImmersedInterface),
+    ("sharp", MethodName::Sharp),
 ];
 
 /// Methods that are recognised and not built.
-const FUTURE_METHODS: [&str; 4] = ["particle-difference-extended", "surface-reaction", "sharp", "free-space"];
+const FUTURE_METHODS: [&str; 3] = ["particle-difference-extended", "surface-reaction", "free-space"];
 
 /// Solvers by name.
 const SOLVERS: [(&str, SolverName); 5] = [
@@ -63,6 +67,7 @@ const EVERY: &[MethodName] = &[
     MethodName::GfdmHybrid,
     MethodName::ParticleDifference,
     MethodName::ImmersedInterface,
+    MethodName::Sharp,
 ];
 /// Methods whose stencils know interfaces.
 const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
@@ -92,10 +97,22 @@ pub(super) fn method(root: &Table<'_>) -> Result<MethodSpec, SceneError> {
     let name = table.get("name").map_or(Ok(MethodName::Auto), |value| method_name(&value))?;
     Ok(MethodSpec {
         name,
-        order: table.get("order").map(|v| v.integer(ORDERS[0], ORDERS[1])).transpose()?.map(|v| v as usize),
+        order: table.get("order").map(|value| order(&value, name)).transpose()?,
         solver: table.get("solver").map_or(Ok(SolverName::Auto), |value| solver_name(&value))?,
         options: options(&table, name)?,
     })
+}
+
+fn order(value: &Value<'_>, method: MethodName) -> Result<usize, SceneError> {
+    if method != MethodName::Sharp {
+        return Ok(value.integer(ORDERS[0], ORDERS[1])? as usize);
+    }
+    let order = value.integer(SHARP_ORDERS[0], SHARP_ORDERS[1])? as usize;
+    if order.is_multiple_of(2) {
+        return Ok(order);
+    }
+    let message = format!("expected an even order, found {order}");
+    Err(value.error(message, "the orders of the method \"sharp\" are 4, 6, 8, … 16, and up to 8 in 3-D"))
 }
 
 fn method_name(value: &Value<'_>) -> Result<MethodName, SceneError> {

@@ -231,6 +231,8 @@ pub enum MethodName {
     ParticleDifference,
     /// `immersed-interface`
     ImmersedInterface,
+    /// `sharp`
+    Sharp,
 }
 
 /// Linear solvers.

@@ -3,13 +3,16 @@
 mod dcpse;
 mod gfdm;
 mod particle_difference;
+mod sharp;
 
 use meshless_interfaces::Method;
 use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams};
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
 use meshless_interfaces::particle_difference::{ParticleDifference, ParticleDifferenceParams};
+use meshless_interfaces::sharp::{Sharp, SharpParams};
 
 use super::effects::Survey;
+use crate::Error;
 use crate::scene::{MethodName, Scene};
 
 /// Parameters of the spatial method.
@@ -21,6 +24,8 @@ pub enum MethodParams {
     ParticleDifference(ParticleDifferenceParams),
     /// DC-PSE operators with immersed interfaces.
     ImmersedInterface(ImmersedParams),
+    /// Sharp fits of high order.
+    Sharp(SharpParams),
 }
 
 /// What a method builds; decides its stages and what they are expected to cost.
@@ -40,12 +45,21 @@ pub(super) struct Steps {
     pub(super) may_need_cells: bool,
 }
 
+/// What a scene asks of a method that it does not do.
+pub(super) fn check(name: MethodName, scene: &Scene) -> Result<(), Error> {
+    match name {
+        MethodName::Sharp => sharp::check(scene),
+        _ => Ok(()),
+    }
+}
+
 impl MethodParams {
     /// The parameters of the method `name` in a scene. The only place, with [`Self::build`], that knows all families.
     pub(super) fn new(name: MethodName, scene: &Scene, survey: &Survey) -> Self {
         match name {
             MethodName::ParticleDifference => Self::ParticleDifference(particle_difference::params(scene)),
             MethodName::ImmersedInterface => Self::ImmersedInterface(dcpse::immersed(scene)),
+            MethodName::Sharp => Self::Sharp(sharp::params(scene)),
             _ => Self::Gfdm(gfdm::params(name, scene, survey)),
         }
     }
@@ -56,6 +70,7 @@ impl MethodParams {
             Self::Gfdm(params) => Box::new(Gfdm { params: *params }),
             Self::ParticleDifference(params) => Box::new(ParticleDifference { params: *params }),
             Self::ImmersedInterface(params) => Box::new(ImmersedInterface { params: *params }),
+            Self::Sharp(params) => Box::new(Sharp { params: *params }),
         }
     }
 
@@ -65,6 +80,7 @@ impl MethodParams {
             Self::Gfdm(params) => gfdm::order(params),
             Self::ParticleDifference(params) => params.degree,
             Self::ImmersedInterface(params) => params.order,
+            Self::Sharp(params) => params.order,
         }
     }
 
@@ -73,6 +89,7 @@ impl MethodParams {
         match self {
             Self::Gfdm(_) => 1,
             Self::ParticleDifference(_) | Self::ImmersedInterface(_) => 2,
+            Self::Sharp(params) => params.order,
         }
     }
 
@@ -81,6 +98,7 @@ impl MethodParams {
             Self::Gfdm(params) => gfdm::steps(params, survey),
             Self::ParticleDifference(_) => particle_difference::steps(survey),
             Self::ImmersedInterface(_) => dcpse::steps(survey),
+            Self::Sharp(_) => sharp::steps(survey),
         }
     }
 
@@ -88,7 +106,7 @@ impl MethodParams {
     pub(super) fn support(&self, dimension: usize) -> Option<f64> {
         match self {
             Self::ImmersedInterface(params) => Some(dcpse::support(dimension, params.order)),
-            Self::Gfdm(_) | Self::ParticleDifference(_) => None,
+            Self::Gfdm(_) | Self::ParticleDifference(_) | Self::Sharp(_) => None,
         }
     }
 }

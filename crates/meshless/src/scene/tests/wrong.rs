@@ -284,11 +284,24 @@ fn method() {
         PLATE,
         &[
             wrong("\"gfdm-hybrid\"", "«\"gfdm-hibrid\"»", "method.name", "unknown method", "\"gfdm-hybrid\""),
-            wrong("\"gfdm-hybrid\"", "«\"sharp\"»", "method.name", "not supported yet", "gfdm-classical"),
+            wrong(
+                "\"gfdm-hybrid\"",
+                "«\"free-space\"»",
+                "method.name",
+                "not supported yet",
+                "gfdm-classical",
+            ),
             wrong("\"gfdm-hybrid\"", "«2»", "method.name", "expected a string", ""),
             wrong("\"bicgstab\"", "«\"multigrid\"»", "method.solver", "not supported yet", "auto"),
             wrong("\"bicgstab\"", "«\"bicg\"»", "method.solver", "unknown name", "bicgstab"),
             wrong("order = 2", "order = «1»", "method.order", "from 2 to 8, found 1", ""),
+            wrong(
+                "name = \"gfdm-hybrid\"\norder = 2",
+                "name = \"sharp\"\norder = «5»",
+                "method.order",
+                "an even order, found 5",
+                "4, 6, 8",
+            ),
             wrong("smoothing = 1", "smoothing = «101»", "method.smoothing", "from 0 to 100", ""),
             wrong("smoothing = 1", "support = «1.0»", "method.support", "above 1", "spacing"),
             wrong(

@@ -1,0 +1,225 @@
+//! The local fit at a node: one polynomial a part of a region, the equation and the interface conditions as rows.
+
+use meshless_stencils::Qr;
+
+use super::basis::Jet;
+use super::maker::Maker;
+use super::parts::{Parts, Row};
+use super::stencil::Stencil;
+
+/// `exp(-DECAY (r/R)^2)` is the weight of the value at a node.
+const DECAY: f64 = 3.5;
+
+/// Weight of the rows of boundary conditions on the flux.
+const BOUNDARY_WEIGHT: f64 = 10.0;
+
+/// Pivots below this part of the largest count as none (Golub & Van Loan, section 5.4).
+const RANK_TOLERANCE: f64 = 1e-12;
+
+/// What a row of the fit has on its right-hand side beside the value of a node: a number, what it would be for the
+/// source 1, and the constants of parts.
+#[derive(Debug, Clone, Copy, Default)]
+struct Given {
+    known: f64,
+    unit_source: f64,
+    constants: [(usize, f64); 2],
+}
+
+/// Memory of one thread.
+#[derive(Debug, Default)]
+pub(super) struct Fit<const D: usize> {
+    qr: Qr,
+    parts: Parts<D>,
+    given: Vec<Given>,
+    /// Weights of the values, one a node.
+    weights: Vec<f64>,
+    wanted: Vec<f64>,
+    z: Vec<f64>,
+    factors: Vec<f64>,
+}
+
+/// A functional of the own polynomial in terms of values and data.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Combination {
+    /// Factors of the values `w` of the nodes of the stencil.
+    pub(super) values: Vec<f64>,
+    /// Factors of the constants `c` of the parts of the stencil.
+    pub(super) constants: Vec<f64>,
+    /// What the data add.
+    pub(super) known: f64,
+    /// What a source of 1 would add.
+    pub(super) unit_source: f64,
+}
+
+impl<const D: usize> Fit<D> {
+    /// Fills and factors the matrix of a stencil.
+    pub(super) fn factor(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+        self.parts.prepare(maker, stencil);
+        self.assemble(maker, stencil);
+        if stencil.parts.len() == 1 {
+            if self.qr.factor(RANK_TOLERANCE) {
+                return;
+            }
+            self.assemble(maker, stencil);
+        }
+        self.qr.factor_pivoted(RANK_TOLERANCE);
+    }
+
+    /// The derivative along an axis of the own polynomial at the node, or with `None` its value there. Returns what is
+    /// left of its reproduction.
+    pub(super) fn functional(
+        &mut self,
+        stencil: &Stencil,
+        axis: Option<usize>,
+        out: &mut Combination,
+    ) -> f64 {
+        self.wanted.clear();
+        self.wanted.resize(self.qr.columns(), 0.0);
+        let (column, size) = axis.map_or((0, 1.0), |axis| (1 + axis, 1.0 / stencil.radius));
+        self.wanted[column] = size;
+        self.z.resize(self.qr.columns(), 0.0);
+        self.factors.resize(self.given.len(), 0.0);
+        let remainder = self.qr.least_norm(&self.wanted, &mut self.z, &mut self.factors) / size;
+        out.values.clear();
+        out.values.extend(self.factors.iter().zip(&self.weights).map(|(f, w)| f * w));
+        out.constants.clear();
+        out.constants.resize(stencil.parts.len(), 0.0);
+        let particular = self.parts.particular_at_center(0, axis);
+        (out.known, out.unit_source) = (size * particular[0], size * particular[1]);
+        for (factor, given) in self.factors.iter().zip(&self.given) {
+            out.known += factor * given.known;
+            out.unit_source += factor * given.unit_source;
+            for &(part, coefficient) in given.constants.iter().filter(|(_, c)| *c != 0.0) {
+                out.constants[part] += factor * coefficient;
+            }
+        }
+        remainder
+    }
+
+    fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+        let boundary: usize = stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum();
+        let at_nodes = stencil.part_of.iter().filter(|&&part| !self.parts.is_harmonic(part)).count();
+        let at_points = |&(_, sides): &(u32, [usize; 2])| {
+            2 + sides.iter().filter(|&&part| !self.parts.is_harmonic(part)).count()
+        };
+        let interface: usize = stencil.points.iter().map(at_points).sum();
+        let columns = self.parts.columns();
+        self.qr.resize(stencil.nodes.len() + at_nodes + interface + boundary, columns);
+        for column in 0..columns {
+            self.qr.column_mut(column).fill(0.0);
+        }
+        self.given.clear();
+        self.weights.clear();
+        self.node_rows(maker, stencil);
+        self.interface_rows(maker, stencil);
+    }
+
+    /// Adds the functional of a part's polynomial to a row; its right-hand side is what the particular part leaves.
+    fn put(&mut self, row: usize, part: usize, jet: &Jet<D>, functional: &Row<D>, given: &mut Given) {
+        let first = self.parts.first_column(part);
+        if functional.is_value() {
+            for (m, value) in jet.values.iter().enumerate() {
+                self.qr.column_mut(first + m)[row] = functional.value * value;
+            }
+        } else {
+            for m in 0..jet.values.len() {
+                self.qr.column_mut(first + m)[row] = functional.apply(jet, m);
+            }
+        }
+        let [known, unit] = self.parts.apply_to_particular(part, functional);
+        given.known -= known;
+        given.unit_source -= unit;
+    }
+
+    /// Rows of the nodes: the value; the equation; conditions on the flux where there are any.
+    fn node_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+        let radius = stencil.radius;
+        let points = maker.problem.cloud.points();
+        let center = &points[stencil.nodes[0] as usize];
+        let nodes = stencil.nodes.len();
+        self.given.resize(nodes, Given::default());
+        let mut jet = std::mem::take(&mut self.parts.jet);
+        for (row, (&j, &part)) in stencil.nodes.iter().zip(&stencil.part_of).enumerate() {
+            let j = j as usize;
+            let z: [f64; D] = std::array::from_fn(|k| (points[j][k] - center[k]) / radius);
+            self.parts.evaluate(maker, part, &z, &mut jet);
+            let weight = (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
+            self.weights.push(weight);
+            let mut given = Given::default();
+            self.put(row, part, &jet, &Row::of_value(weight), &mut given);
+            self.given[row] = given;
+            let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
+            if !self.parts.is_harmonic(part) {
+                let source = maker.problem.source.map_or(0.0, |f| f[j]);
+                self.equation(maker, part, &jet, &maker.slope(j), radius, eta * scale, source);
+            }
+            for condition in &maker.boundary_rows[j] {
+                let functional = Row {
+                    value: BOUNDARY_WEIGHT * radius * condition.exchange / eta,
+                    gradient: condition.normal.map(|n| BOUNDARY_WEIGHT * n),
+                    laplacian: 0.0,
+                };
+                let factor = BOUNDARY_WEIGHT * radius / (eta * scale);
+                let constants = [(part, -factor * condition.exchange), (part, 0.0)];
+                let mut given = Given { known: factor * condition.flux, unit_source: 0.0, constants };
+                self.put(self.given.len(), part, &jet, &functional, &mut given);
+                self.given.push(given);
+            }
+        }
+        self.parts.jet = jet;
+    }
+
+    /// The row `lap Q + grad ln eta . grad Q = -f / (eta s)`, times the square of the radius.
+    fn equation(
+        &mut self,
+        maker: &Maker<'_, D>,
+        part: usize,
+        jet: &Jet<D>,
+        slope: &[f64; D],
+        radius: f64,
+        conductance: f64,
+        source: f64,
+    ) {
+        let strength = maker.params.equation_weight;
+        let functional =
+            Row { value: 0.0, gradient: slope.map(|s| strength * radius * s), laplacian: strength };
+        let unit = -strength * radius * radius / conductance;
+        let mut given = Given { known: unit * source, unit_source: unit, ..Given::default() };
+        self.put(self.given.len(), part, jet, &functional, &mut given);
+        self.given.push(given);
+    }
+
+    /// Rows of the interface points: the equation on both sides, the jump of u, the jump of the flux.
+    fn interface_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+        let radius = stencil.radius;
+        let center = &maker.problem.cloud.points()[stencil.nodes[0] as usize];
+        let weight = maker.params.jump_weight;
+        let mut jet = std::mem::take(&mut self.parts.jet);
+        for &(index, places) in &stencil.points {
+            let at = &maker.interfaces.places[index as usize];
+            let point = &maker.interfaces.points[index as usize];
+            let z: [f64; D] = std::array::from_fn(|k| (at[k] - center[k]) / radius);
+            let scales = places.map(|place| maker.unknowns.scale[stencil.parts[place] as usize]);
+            let conductance: [f64; 2] = std::array::from_fn(|s| point.sides[s].eta * scales[s]);
+            let largest = conductance[0].max(conductance[1]);
+            let constants = [(places[0], weight), (places[1], -weight)];
+            let mut value = Given { known: weight * point.value, unit_source: 0.0, constants };
+            let mut flux = Given { known: weight * radius * point.flux / largest, ..Given::default() };
+            let first = self.given.len();
+            self.given.resize(first + 2, Given::default());
+            for (s, sign) in [-1.0, 1.0].into_iter().enumerate() {
+                self.parts.evaluate(maker, places[s], &z, &mut jet);
+                self.put(first, places[s], &jet, &Row::of_value(sign * weight * scales[s]), &mut value);
+                let strength = sign * weight * conductance[s] / largest;
+                let slope = Row { gradient: point.normal.map(|n| strength * n), ..Row::of_value(0.0) };
+                self.put(first + 1, places[s], &jet, &slope, &mut flux);
+                if !self.parts.is_harmonic(places[s]) {
+                    let side = &point.sides[s];
+                    self.equation(maker, places[s], &jet, &side.slope, radius, conductance[s], side.source);
+                }
+            }
+            (self.given[first], self.given[first + 1]) = (value, flux);
+        }
+        self.parts.jet = jet;
+    }
+}

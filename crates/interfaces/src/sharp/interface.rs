@@ -1,0 +1,182 @@
+//! Points on the interfaces, with everything that the conditions and the equation need there.
+
+use meshless_neighbors::CellList;
+use rayon::prelude::*;
+
+use super::unknowns::Unknowns;
+use crate::{Field, MethodError, Problem};
+
+/// Least distance between two points of an interface, in spacings of the cloud. Candidates lie densely, so that gaps are
+/// at most twice as long; distances of 0.3 to 1.2 serve as well, 2.5 is too far.
+const SEPARATION: f64 = 0.6;
+
+/// How far from an interface a node may be to be projected onto it, in spacings.
+const BAND: f64 = 1.5;
+
+/// How far outside of the domain a point may be, over the domain's diameter: rounding.
+const ON_BOUNDARY: f64 = 1e-9;
+
+/// Step of difference quotients where no derivative is given, over the spacing.
+const GRADIENT_STEP: f64 = 1e-4;
+
+/// Nodes that are asked which connected part of a region they belong to.
+const NODES_ASKED: [usize; 2] = [12, 96];
+
+/// What holds on one side of a point of an interface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side<const D: usize> {
+    /// Connected part of a region.
+    pub(super) part: u32,
+    /// Diffusivity.
+    pub(super) eta: f64,
+    /// Gradient of its logarithm.
+    pub(super) slope: [f64; D],
+    /// Source.
+    pub(super) source: f64,
+}
+
+/// A point of an interface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct InterfacePoint<const D: usize> {
+    /// Unit normal, from the first side to the second.
+    pub(super) normal: [f64; D],
+    /// Both sides.
+    pub(super) sides: [Side<D>; 2],
+    /// `u_1 - u_0`.
+    pub(super) value: f64,
+    /// `(eta du/dn)_1 - (eta du/dn)_0`.
+    pub(super) flux: f64,
+}
+
+/// All interfaces.
+#[derive(Debug, Default)]
+pub(super) struct InterfacePoints<const D: usize> {
+    /// Where the points are.
+    pub(super) places: Vec<[f64; D]>,
+    /// What holds there, in the same order.
+    pub(super) points: Vec<InterfacePoint<D>>,
+}
+
+/// A place on the interface between two labels, the lower one first.
+struct Candidate<const D: usize> {
+    at: [f64; D],
+    normal: [f64; D],
+    labels: [u16; 2],
+    spacing: f64,
+}
+
+impl<const D: usize> InterfacePoints<D> {
+    /// Projects the nodes near interfaces onto them, thins what results, and evaluates the data there.
+    pub(super) fn sample(
+        problem: &Problem<'_, D>,
+        unknowns: &Unknowns,
+        nodes: &CellList<'_, D>,
+    ) -> Result<Self, MethodError> {
+        let tolerance = ON_BOUNDARY * problem.domain.bounds().diameter();
+        let candidates: Vec<Candidate<D>> = (0..problem.cloud.len())
+            .into_par_iter()
+            .flat_map_iter(|i| candidates_of(problem, i, tolerance))
+            .collect();
+        let kept = thin(&candidates)?;
+        let found: Vec<(InterfacePoint<D>, [f64; D])> = kept
+            .into_par_iter()
+            .map_init(Vec::new, |found, k| {
+                let candidate = &candidates[k];
+                Ok(point(problem, unknowns, nodes, candidate, found)?.map(|point| (point, candidate.at)))
+            })
+            .filter_map(Result::transpose)
+            .collect::<Result<_, MethodError>>()?;
+        let (points, places) = found.into_iter().unzip();
+        Ok(Self { places, points })
+    }
+}
+
+/// The feet of node i on the interfaces beside it.
+fn candidates_of<const D: usize>(problem: &Problem<'_, D>, i: usize, tolerance: f64) -> Vec<Candidate<D>> {
+    let own = problem.labels[i];
+    let mut beyond: Vec<u16> = Vec::new();
+    for &j in problem.supports.lists.of(i) {
+        let label = problem.labels[j as usize];
+        if label != own && !beyond.contains(&label) {
+            beyond.push(label);
+        }
+    }
+    let (x, spacing) = (&problem.cloud.points()[i], problem.cloud.spacing()[i]);
+    let foot = |other: u16| {
+        let labels = [own.min(other), own.max(other)];
+        let foot = problem.regions.project(labels[0], labels[1], x, BAND * spacing).ok()?;
+        let inside = problem.domain.contains(&foot.point, tolerance);
+        inside.then_some(Candidate { at: foot.point, normal: foot.normal, labels, spacing })
+    };
+    beyond.into_iter().filter_map(foot).collect()
+}
+
+/// Keeps, in the order of the nodes, every candidate that is not close to one of the same interface kept before.
+fn thin<const D: usize>(candidates: &[Candidate<D>]) -> Result<Vec<usize>, MethodError> {
+    let places: Vec<[f64; D]> = candidates.iter().map(|c| c.at).collect();
+    let widest = candidates.iter().fold(0.0_f64, |w, c| w.max(c.spacing));
+    let index = CellList::new(&places, SEPARATION * widest)?;
+    let mut passed = vec![false; candidates.len()];
+    let (mut kept, mut near) = (Vec::new(), Vec::new());
+    for (k, candidate) in candidates.iter().enumerate() {
+        if passed[k] {
+            continue;
+        }
+        kept.push(k);
+        near.clear();
+        index.within(&candidate.at, SEPARATION * candidate.spacing, &mut near);
+        near.iter()
+            .filter(|&&j| candidates[j as usize].labels == candidate.labels)
+            .for_each(|&j| passed[j as usize] = true);
+    }
+    Ok(kept)
+}
+
+/// What holds at a candidate; `None` where no node of one of its regions is near.
+fn point<const D: usize>(
+    problem: &Problem<'_, D>,
+    unknowns: &Unknowns,
+    nodes: &CellList<'_, D>,
+    candidate: &Candidate<D>,
+    found: &mut Vec<(f64, u32)>,
+) -> Result<Option<InterfacePoint<D>>, MethodError> {
+    let Candidate { at, normal, labels, spacing } = candidate;
+    let mut part_of = |label: u16| {
+        NODES_ASKED.iter().find_map(|&count| {
+            let of_label = |&j: &u32| problem.labels[j as usize] == label;
+            nodes.nearest(at, count, found).find(of_label).map(|j| unknowns.part[j as usize])
+        })
+    };
+    let (Some(first), Some(second)) = (part_of(labels[0]), part_of(labels[1])) else { return Ok(None) };
+    let side = |part: u32, label: u16| {
+        let material = &problem.materials[label as usize];
+        let eta = material.diffusivity.at(at);
+        if !(eta > 0.0 && eta.is_finite()) {
+            let what = format!(
+                "the diffusivity is {eta} at the interface point {at:?}; it must be positive and finite up to the interface"
+            );
+            return Err(MethodError::InvalidProblem { what });
+        }
+        let slope = material.diffusivity.gradient(at, GRADIENT_STEP * spacing).map(|g| g / eta);
+        let source = material.source.as_ref().map_or(0.0, |f| f.at(at));
+        finite(source, "source", at)?;
+        Ok(Side { part, eta, slope, source })
+    };
+    let sides = [side(first, labels[0])?, side(second, labels[1])?];
+    let jump = problem.jump_between(labels[0], labels[1]);
+    let given = |field: Option<&Field<D>>| field.map_or(0.0, |f| f.at(at));
+    // The normal of the scene's entry may point the other way: then u jumps by the opposite, and the flux, whose sign
+    // turns with the normal as well as with the order of the sides, by the same.
+    let value = jump.map_or(0.0, |(jump, sign)| sign * given(jump.value.as_ref()));
+    let flux = jump.map_or(0.0, |(jump, _)| given(jump.flux.as_ref()));
+    finite(value, "jump of u", at)?;
+    finite(flux, "jump of the flux", at)?;
+    Ok(Some(InterfacePoint { normal: *normal, sides, value, flux }))
+}
+
+fn finite<const D: usize>(value: f64, what: &str, at: &[f64; D]) -> Result<(), MethodError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(MethodError::InvalidProblem { what: format!("the {what} is {value} at the interface point {at:?}") })
+}

@@ -1,0 +1,211 @@
+//! Everything that the fits of all nodes share, and the rows that they make.
+
+use meshless_neighbors::CellList;
+use rayon::prelude::*;
+
+use super::basis::Basis;
+use super::fit::{Combination, Fit};
+use super::interface::InterfacePoints;
+use super::params::{Form, SharpParams};
+use super::particular::Particular;
+use super::stencil::Stencil;
+use super::unknowns::Unknowns;
+use crate::{Condition, Material, MethodError, Problem};
+
+/// What is left of the reproduction of a value before a larger stencil is tried.
+const REPRODUCTION: f64 = 1e-6;
+
+/// How often a stencil is enlarged, by half each time.
+const ENLARGEMENTS: usize = 3;
+
+/// Step of difference quotients of the diffusivity, over the spacing, where no derivative is given.
+const GRADIENT_STEP: f64 = 1e-4;
+
+/// Least weight that the own value may leave to the others: below it the row would say nothing.
+const LEAST_COMPLEMENT: f64 = 1e-10;
+
+/// `exchange u + eta du/dn = flux` at a boundary node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BoundaryRow<const D: usize> {
+    pub(super) normal: [f64; D],
+    pub(super) exchange: f64,
+    pub(super) flux: f64,
+}
+
+/// What all fits share.
+pub(super) struct Maker<'a, const D: usize> {
+    pub(super) problem: &'a Problem<'a, D>,
+    pub(super) params: SharpParams,
+    /// Which regions are treated in the harmonic form, by label.
+    pub(super) harmonic: Vec<bool>,
+    /// Particular parts of sources in these regions; `None` where there is nothing to fit.
+    pub(super) particular: Option<Particular<D>>,
+    complete_basis: Basis<D>,
+    harmonic_basis: Basis<D>,
+    pub(super) unknowns: &'a Unknowns,
+    pub(super) interfaces: &'a InterfacePoints<D>,
+    pub(super) boundary_rows: Vec<Vec<BoundaryRow<D>>>,
+    /// Gradient of the logarithm of the diffusivity at every node; none where it is constant in every region.
+    slopes: Option<Vec<[f64; D]>>,
+    nodes: &'a CellList<'a, D>,
+    points: CellList<'a, D>,
+}
+
+/// Memory of one thread.
+#[derive(Debug, Default)]
+pub(super) struct Scratch<const D: usize> {
+    pub(super) stencil: Stencil,
+    pub(super) fit: Fit<D>,
+    pub(super) combination: Combination,
+}
+
+/// The row of a node: `w_i = sum_j h_j w_j + sum_K H_K C_K + known`, divided by what the own value leaves.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    pub(super) node: usize,
+    pub(super) neighbors: Vec<u32>,
+    /// Off-diagonal entries, in the order of the neighbours.
+    pub(super) coefficients: Vec<f64>,
+    pub(super) row_sum: f64,
+    /// Coefficients of constants: cluster, value.
+    pub(super) constants: Vec<(u32, f64)>,
+    pub(super) rhs: f64,
+    pub(super) crosses: bool,
+    pub(super) enlarged: bool,
+}
+
+impl<'a, const D: usize> Maker<'a, D> {
+    pub(super) fn new(
+        problem: &'a Problem<'a, D>,
+        params: SharpParams,
+        unknowns: &'a Unknowns,
+        nodes: &'a CellList<'a, D>,
+        interfaces: &'a InterfacePoints<D>,
+    ) -> Result<Self, MethodError> {
+        let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
+        let is_harmonic =
+            |m: &Material<D>| params.form == Form::Harmonic && m.diffusivity.as_constant().is_some();
+        let is_fitted =
+            |m: &Material<D>| is_harmonic(m) && m.source.as_ref().is_some_and(|f| f.as_constant().is_none());
+        let fitted = problem.materials.iter().any(is_fitted);
+        Ok(Self {
+            problem,
+            params,
+            harmonic: problem.materials.iter().map(is_harmonic).collect(),
+            particular: fitted.then(|| Particular::new(params.source_degree())),
+            complete_basis: Basis::complete(params.order),
+            harmonic_basis: Basis::harmonic(params.order),
+            unknowns,
+            interfaces,
+            boundary_rows: boundary_rows(problem)?,
+            slopes: slopes(problem),
+            nodes,
+            points: CellList::new(&interfaces.places, 3.0 * widest)?,
+        })
+    }
+
+    /// The basis of a form.
+    pub(super) fn basis_of(&self, harmonic: bool) -> &Basis<D> {
+        if harmonic { &self.harmonic_basis } else { &self.complete_basis }
+    }
+
+    /// Gradient of the logarithm of the diffusivity at a node.
+    pub(super) fn slope(&self, j: usize) -> [f64; D] {
+        self.slopes.as_ref().map_or([0.0; D], |slopes| slopes[j])
+    }
+
+    /// Gathers and factors the stencil of node i, a larger one where the first does not determine its value. Leaves
+    /// the combination of the value in `scratch`; returns whether the stencil was enlarged.
+    pub(super) fn factor(&self, i: usize, scratch: &mut Scratch<D>) -> Result<bool, MethodError> {
+        let Scratch { stencil, fit, combination } = scratch;
+        let mut count = self.params.stencil_nodes(D);
+        let mut remainder = f64::INFINITY;
+        for attempt in 0..=ENLARGEMENTS {
+            let center = &self.problem.cloud.points()[i];
+            stencil.gather(center, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
+            fit.factor(self, stencil);
+            remainder = fit.functional(stencil, None, combination);
+            let complement = 1.0 - combination.values[0];
+            if remainder <= REPRODUCTION && complement > LEAST_COMPLEMENT {
+                return Ok(attempt > 0);
+            }
+            count += count / 2;
+        }
+        let spacing = 0.5 * self.problem.cloud.spacing()[i];
+        let position = self.problem.cloud.points()[i].to_vec();
+        Err(MethodError::Unresolved { node: i, position, nodes: stencil.nodes.len(), remainder, spacing })
+    }
+
+    /// The row of node i.
+    pub(super) fn row(&self, i: usize, scratch: &mut Scratch<D>) -> Result<Row, MethodError> {
+        let enlarged = self.factor(i, scratch)?;
+        let Scratch { stencil, combination, .. } = scratch;
+        let part = stencil.parts[0];
+        // A row reads as the equation does: a source of 1 would stand on its right-hand side as the volume.
+        let volume = self.problem.cloud.spacing()[i].powi(D as i32);
+        let unit = combination.unit_source.abs();
+        let level = self.problem.eta[i] * self.unknowns.scale[part as usize];
+        let typical = self.problem.cloud.spacing()[i].powi(2) / (4.0 * D as f64 * level);
+        let factor = volume / unit.max(typical);
+        let neighbors = stencil.nodes[1..].to_vec();
+        let coefficients: Vec<f64> = combination.values[1..].iter().map(|h| -factor * h).collect();
+        let uniform =
+            |&other: &u32| self.unknowns.scale[other as usize] == self.unknowns.scale[part as usize];
+        let exchanges = |&j: &u32| self.boundary_rows[j as usize].iter().any(|row| row.exchange != 0.0);
+        // Constants are reproduced where nothing but differences is prescribed: no rounding remains of their sum.
+        let row_sum = if stencil.parts.iter().all(uniform) && !stencil.nodes.iter().any(exchanges) {
+            0.0
+        } else {
+            factor * (1.0 - combination.values[0]) + coefficients.iter().sum::<f64>()
+        };
+        let mut constants: Vec<(u32, f64)> = Vec::new();
+        for (&part, h) in stencil.parts.iter().zip(&combination.constants) {
+            for &(cluster, sigma) in &self.unknowns.chain[part as usize] {
+                match constants.iter_mut().find(|(c, _)| *c == cluster) {
+                    Some((_, sum)) => *sum -= factor * sigma * h,
+                    None => constants.push((cluster, -factor * sigma * h)),
+                }
+            }
+        }
+        let rhs = factor * combination.known;
+        Ok(Row {
+            node: i,
+            neighbors,
+            coefficients,
+            row_sum,
+            constants,
+            rhs,
+            crosses: stencil.parts.len() > 1,
+            enlarged,
+        })
+    }
+}
+
+fn boundary_rows<const D: usize>(problem: &Problem<'_, D>) -> Result<Vec<Vec<BoundaryRow<D>>>, MethodError> {
+    let mut rows = vec![Vec::new(); problem.cloud.len()];
+    for (node, conditions) in problem.cloud.boundary().iter().zip(problem.conditions) {
+        let i = node.node as usize;
+        for (touch, condition) in node.touches.iter().zip(conditions) {
+            if matches!(condition, Condition::Dirichlet(_)) {
+                continue;
+            }
+            let (exchange, flux) = condition.as_flux(problem.eta[i]).ok_or_else(|| {
+                MethodError::RobinWithoutFlux { node: i, position: problem.cloud.points()[i].to_vec() }
+            })?;
+            rows[i].push(BoundaryRow { normal: touch.normal, exchange, flux });
+        }
+    }
+    Ok(rows)
+}
+
+fn slopes<const D: usize>(problem: &Problem<'_, D>) -> Option<Vec<[f64; D]>> {
+    if problem.materials.iter().all(|m| m.diffusivity.as_constant().is_some()) {
+        return None;
+    }
+    let slope = |i: usize| {
+        let field = &problem.materials[problem.labels[i] as usize].diffusivity;
+        let step = GRADIENT_STEP * problem.cloud.spacing()[i];
+        field.gradient(&problem.cloud.points()[i], step).map(|g| g / problem.eta[i])
+    };
+    Some((0..problem.cloud.len()).into_par_iter().map(slope).collect())
+}

@@ -1,0 +1,142 @@
+//! The sharp method: order four to twelve on clouds that do not follow the interface, at any contrast.
+//!
+//! At every node one polynomial for each region that is present in the stencil is fitted to the values at the nearest
+//! nodes, to the equation, and to what is known at the interfaces between them. The equation of the node says that
+//! its value is what the fit to all others predicts. Stiff regions that touch no prescribed value have a constant
+//! of their own, and their nodes' unknowns carry the flux. See `docs/sharp.md`.
+
+mod basis;
+mod fit;
+mod gradient;
+mod harmonic;
+mod interface;
+mod maker;
+mod params;
+mod particular;
+mod parts;
+mod stencil;
+mod unknowns;
+
+use std::time::Instant;
+
+use meshless_neighbors::CellList;
+use meshless_sparse::DifferenceMatrix;
+use rayon::prelude::*;
+
+use crate::method::{Counts, Discretization, Method, RowKind, SplitRows};
+use crate::{MethodError, Problem};
+use interface::InterfacePoints;
+use maker::{Maker, Row, Scratch};
+pub use params::{Form, MAX_ORDER, SharpParams};
+use unknowns::Unknowns;
+
+/// The sharp method.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Sharp {
+    /// What was chosen.
+    pub params: SharpParams,
+}
+
+impl Sharp {
+    fn check<const D: usize>(&self, problem: &Problem<'_, D>) -> Result<(), MethodError> {
+        problem.check()?;
+        let order = self.params.order;
+        if order < 2 || !order.is_multiple_of(2) || order > MAX_ORDER[D - 1] {
+            let what = format!(
+                "order {order} of the sharp method in {D}-D; it must be even and at most {}",
+                MAX_ORDER[D - 1]
+            );
+            return Err(MethodError::InvalidProblem { what });
+        }
+        Ok(())
+    }
+
+    /// Calls `work` with what all fits share.
+    fn with_maker<const D: usize, T>(
+        &self,
+        problem: &Problem<'_, D>,
+        work: impl FnOnce(&Maker<'_, D>) -> Result<T, MethodError>,
+    ) -> Result<T, MethodError> {
+        self.check(problem)?;
+        let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
+        let nodes = CellList::new(problem.cloud.points(), 3.0 * widest)?;
+        let unknowns = Unknowns::find(problem)?;
+        let interfaces = InterfacePoints::sample(problem, &unknowns, &nodes)?;
+        work(&Maker::new(problem, self.params, &unknowns, &nodes, &interfaces)?)
+    }
+}
+
+impl<const D: usize> Method<D> for Sharp {
+    fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
+        let start = Instant::now();
+        let known = problem.dirichlet();
+        self.with_maker(problem, |maker| {
+            let rows = (0..known.len())
+                .into_par_iter()
+                .filter(|&i| known[i].is_none())
+                .map_init(Scratch::default, |scratch, i| maker.row(i, scratch))
+                .collect::<Vec<Result<Row, MethodError>>>();
+            // Which node an error names must not depend on which thread was faster.
+            let rows = rows.into_iter().collect::<Result<Vec<Row>, MethodError>>()?;
+            assemble(problem, maker.unknowns, &known, &rows, start.elapsed().as_secs_f64())
+        })
+    }
+
+    /// The gradient of each node's own fit.
+    fn gradient(&self, problem: &Problem<'_, D>, u: &[f64]) -> Result<Vec<[f64; D]>, MethodError> {
+        self.with_maker(problem, |maker| {
+            (0..u.len())
+                .into_par_iter()
+                .map_init(Scratch::default, |scratch, i| maker.gradient(i, u, scratch))
+                .collect::<Vec<Result<[f64; D], MethodError>>>()
+                .into_iter()
+                .collect()
+        })
+    }
+}
+
+fn assemble<const D: usize>(
+    problem: &Problem<'_, D>,
+    unknowns: &Unknowns,
+    known: &[Option<f64>],
+    rows: &[Row],
+    stencil_seconds: f64,
+) -> Result<Discretization, MethodError> {
+    let n = known.len();
+    let mut row_of: Vec<Option<&Row>> = vec![None; n];
+    rows.iter().for_each(|row| row_of[row.node] = Some(row));
+    let kinds: Vec<RowKind> = (0..n)
+        .map(|i| match row_of[i] {
+            None => RowKind::Dirichlet,
+            Some(row) if row.crosses => RowKind::Constrained,
+            Some(_) if problem.cloud.is_boundary(i) => RowKind::StrongBoundary,
+            Some(_) => RowKind::Strong,
+        })
+        .collect();
+    let rhs = (0..n).map(|i| row_of[i].map_or(known[i].unwrap_or(0.0), |row| row.rhs)).collect();
+    let matrix = DifferenceMatrix::from_rows(n, |i, out| match row_of[i] {
+        None => out.add_to_row_sum(1.0),
+        Some(row) => {
+            let pairs = row.neighbors.iter().zip(&row.coefficients);
+            pairs.for_each(|(&j, &c)| out.push(j as usize, c));
+            out.add_to_row_sum(row.row_sum);
+        }
+    })?;
+    let constants = if unknowns.constants() == 0 {
+        None
+    } else {
+        let mut columns = vec![Vec::new(); unknowns.constants()];
+        for row in rows {
+            row.constants.iter().for_each(|&(k, value)| columns[k as usize].push((row.node as u32, value)));
+        }
+        Some(SplitRows { split: unknowns.split(&matrix)?, columns })
+    };
+    let counts = Counts {
+        stencils: rows.len(),
+        enlarged: rows.iter().filter(|row| row.enlarged).count(),
+        constrained: rows.iter().filter(|row| row.crosses).count(),
+        ..Counts::default()
+    };
+    let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();
+    Ok(Discretization { rows: matrix, rhs, constants, kinds, volumes, counts, stencil_seconds })
+}

@@ -1,0 +1,77 @@
+//! What can be chosen about the sharp method.
+
+/// Highest order that is offered, by dimension.
+pub const MAX_ORDER: [usize; 3] = [16, 16, 8];
+
+/// Nodes of a stencil in two dimensions for the orders 2, 4, 6, …: about two and a half times as many as there are
+/// harmonic polynomials of that degree.
+const NODES_2D: [usize; 8] = [14, 24, 32, 50, 60, 75, 87, 100];
+
+/// The same in three dimensions.
+const NODES_3D: [usize; 4] = [22, 50, 110, 190];
+
+/// Nodes of a stencil in one dimension beyond the order.
+const NODES_1D_BEYOND: usize = 3;
+
+/// Degrees that the polynomials of sources have beyond those of the order, in the harmonic form: a particular part that
+/// is better than the rest makes the form as accurate as the general one, whose equation rows see the source as well.
+const SOURCE_DEGREES_BEYOND: usize = 2;
+
+/// How the equation enters a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// As rows, with all polynomials up to the order; for any diffusivity.
+    General,
+    /// Solved beforehand where the diffusivity of a region is constant: harmonic polynomials and a particular part;
+    /// the general form where it varies.
+    Harmonic,
+}
+
+/// Parameters of the sharp method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SharpParams {
+    /// Degree of the polynomials, even.
+    pub order: usize,
+    /// Nodes of a stencil, the node itself included; `None` for the number that suits the order.
+    pub nodes: Option<usize>,
+    /// Weight of the rows that say how u and its flux jump.
+    pub jump_weight: f64,
+    /// Weight of the rows that say that the equation holds.
+    pub equation_weight: f64,
+    /// How the equation enters a fit.
+    pub form: Form,
+    /// Degree of the polynomials that sources are fitted by in the harmonic form; `None` for one that suits the order.
+    pub source_degree: Option<usize>,
+}
+
+impl Default for SharpParams {
+    fn default() -> Self {
+        Self {
+            order: 4,
+            nodes: None,
+            jump_weight: 10.0,
+            equation_weight: 100.0,
+            form: Form::Harmonic,
+            source_degree: None,
+        }
+    }
+}
+
+impl SharpParams {
+    /// Degree of the polynomials that sources are fitted by in the harmonic form.
+    pub fn source_degree(&self) -> usize {
+        self.source_degree.unwrap_or(self.order - 2 + SOURCE_DEGREES_BEYOND)
+    }
+
+    /// Nodes of a stencil in `dimension` dimensions, the node itself included.
+    pub fn stencil_nodes(&self, dimension: usize) -> usize {
+        self.nodes.unwrap_or_else(|| {
+            let table: &[usize] = match dimension {
+                1 => return self.order + NODES_1D_BEYOND,
+                2 => &NODES_2D,
+                _ => &NODES_3D,
+            };
+            table[(self.order / 2).clamp(1, table.len()) - 1]
+        })
+    }
+}

@@ -1,0 +1,132 @@
+//! What a stencil is made of: the nearest nodes regardless of side, the parts they belong to, the points of the
+//! interfaces between these.
+
+use meshless_neighbors::CellList;
+
+use super::interface::InterfacePoints;
+use super::unknowns::Unknowns;
+
+/// Points of an interface that are looked at where none is within the stencil.
+const POINTS_ASKED: usize = 24;
+
+/// A stencil.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Stencil {
+    /// Distance of the farthest node.
+    pub(super) radius: f64,
+    /// Nodes by distance, the node itself first.
+    pub(super) nodes: Vec<u32>,
+    /// Place in `parts` of every node.
+    pub(super) part_of: Vec<usize>,
+    /// Connected parts of regions, that of the node itself first.
+    pub(super) parts: Vec<u32>,
+    /// Points of interfaces between these parts, and the places of the parts of both sides.
+    pub(super) points: Vec<(u32, [usize; 2])>,
+    linked: Vec<bool>,
+    found: Vec<(f64, u32)>,
+    near: Vec<u32>,
+}
+
+impl Stencil {
+    /// Gathers the stencil of `count` nodes round `center`.
+    pub(super) fn gather<const D: usize>(
+        &mut self,
+        center: &[f64; D],
+        count: usize,
+        nodes: &CellList<'_, D>,
+        unknowns: &Unknowns,
+        interfaces: (&InterfacePoints<D>, &CellList<'_, D>),
+    ) {
+        self.nodes.clear();
+        self.nodes.extend(nodes.nearest(center, count, &mut self.found));
+        self.radius = self.found.last().map_or(0.0, |last| last.0.sqrt());
+        self.parts.clear();
+        self.part_of.clear();
+        self.points.clear();
+        for &j in &self.nodes {
+            let part = unknowns.part[j as usize];
+            let place = self.parts.iter().position(|&p| p == part).unwrap_or_else(|| {
+                self.parts.push(part);
+                self.parts.len() - 1
+            });
+            self.part_of.push(place);
+        }
+        if self.parts.len() > 1 {
+            self.gather_points(center, interfaces);
+        }
+    }
+
+    fn gather_points<const D: usize>(
+        &mut self,
+        center: &[f64; D],
+        (interfaces, index): (&InterfacePoints<D>, &CellList<'_, D>),
+    ) {
+        self.near.clear();
+        index.within(center, self.radius, &mut self.near);
+        for k in 0..self.near.len() {
+            let point = self.near[k];
+            if let Some(places) = self.places(interfaces, point) {
+                self.points.push((point, places));
+            }
+        }
+        self.linked.clear();
+        self.linked.resize(self.parts.len(), false);
+        self.linked[0] = true;
+        self.spread();
+        if self.linked.contains(&false) {
+            // No point within the stencil joins a part to the rest: the nearest one outside does.
+            self.near.clear();
+            self.near.extend(index.nearest(center, POINTS_ASKED, &mut self.found));
+            for k in 0..self.near.len() {
+                let point = self.near[k];
+                if let Some([a, b]) = self.places(interfaces, point)
+                    && self.linked[a] != self.linked[b]
+                {
+                    self.points.push((point, [a, b]));
+                    self.spread();
+                }
+            }
+        }
+        if self.linked.contains(&false) {
+            self.drop_unlinked();
+        }
+    }
+
+    /// The places of the parts on both sides of a point, where both are in the stencil.
+    fn places<const D: usize>(&self, interfaces: &InterfacePoints<D>, point: u32) -> Option<[usize; 2]> {
+        let sides = &interfaces.points[point as usize].sides;
+        let place = |part: u32| self.parts.iter().position(|&p| p == part);
+        Some([place(sides[0].part)?, place(sides[1].part)?])
+    }
+
+    /// Marks what is joined to what is marked.
+    fn spread(&mut self) {
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for &(_, [a, b]) in &self.points {
+                if self.linked[a] != self.linked[b] {
+                    (self.linked[a], self.linked[b]) = (true, true);
+                    grown = true;
+                }
+            }
+        }
+    }
+
+    /// Leaves out parts that no point of an interface joins to the node's own: they say nothing about it.
+    fn drop_unlinked(&mut self) {
+        let mut renumbered = vec![usize::MAX; self.parts.len()];
+        let mut parts = Vec::with_capacity(self.parts.len());
+        for (place, &part) in self.parts.iter().enumerate().filter(|(place, _)| self.linked[*place]) {
+            renumbered[place] = parts.len();
+            parts.push(part);
+        }
+        let kept = |&(_, place): &(u32, usize)| renumbered[place] != usize::MAX;
+        let pairs: Vec<(u32, usize)> =
+            self.nodes.iter().copied().zip(self.part_of.iter().copied()).filter(kept).collect();
+        (self.nodes, self.part_of) = pairs.into_iter().map(|(j, place)| (j, renumbered[place])).unzip();
+        self.points.retain(|&(_, [a, b])| renumbered[a] != usize::MAX && renumbered[b] != usize::MAX);
+        self.points.iter_mut().for_each(|(_, sides)| *sides = sides.map(|place| renumbered[place]));
+        self.parts = parts;
+    }
+}
