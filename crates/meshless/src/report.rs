@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 /// Everything about a solve but the field itself.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Report {
     /// Title of the scene.
     pub title: String,
@@ -50,7 +50,7 @@ pub struct Report {
 }
 
 /// The time steps of an unsteady scene.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct TimeReport {
     /// The time at which it ends; all errors, probes and pictures are about this time.
     pub end: f64,
@@ -65,7 +65,7 @@ pub struct TimeReport {
 }
 
 /// Relative norms of the error; definitions in [`crate::norms`].
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Errors {
     /// Relative L2 norm.
     pub l2: f64,
@@ -78,7 +78,7 @@ pub struct Errors {
 }
 
 /// Norms over one region.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct RegionErrors {
     /// Relative L2 norm.
     pub l2: f64,
@@ -89,7 +89,7 @@ pub struct RegionErrors {
 }
 
 /// Error estimated by comparison with a coarser cloud.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Estimate {
     /// Relative L2 norm; absent where the coarser cloud cannot be solved on.
     pub l2: Option<f64>,
@@ -99,7 +99,7 @@ pub struct Estimate {
 }
 
 /// Smallest and largest nodal value.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Extrema {
     /// Smallest.
     pub min: f64,
@@ -108,7 +108,7 @@ pub struct Extrema {
 }
 
 /// How the linear system was solved.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct SolverReport {
     /// Name of the solver with its preconditioner.
     pub name: String,
@@ -142,7 +142,7 @@ pub struct NodeReport {
 }
 
 /// Properties of the matrix that the discrete maximum principle and conservation rest on.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct MatrixSummary {
     /// Largest off-diagonal entry of the wrong sign over the diagonal of its row; 0 for an M-matrix.
     pub wrong_sign: f64,
@@ -178,7 +178,7 @@ pub struct Seconds {
 }
 
 /// A value asked for.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Probe {
     /// Where.
     pub at: Vec<f64>,

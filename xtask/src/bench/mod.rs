@@ -26,12 +26,13 @@ const BENCHES: &[Bench] = &[
         "matrix-vector product against the bandwidth of the memory, incomplete factorisation",
         micro::sparse::run,
     ),
+    ("freespace", "convolution in free space against the bare transforms", micro::freespace::run),
     ("effects", "what each effect of a scene costs, and what the facade does", effects::run),
     ("scene", "a scene of 1e5 nodes and contrast 1e6, from points to solution", scene::run),
 ];
 
 /// What `micro` stands for.
-const MICRO: &[&str] = &["neighbors", "stencils", "cells", "sparse"];
+const MICRO: &[&str] = &["neighbors", "stencils", "cells", "sparse", "freespace"];
 
 pub(crate) fn run(arguments: &[String]) -> ExitCode {
     let chosen = match choose(arguments) {

@@ -9,6 +9,7 @@ use super::manifest::{self, Manifest};
 const LEAVES: &[&str] = &[
     "meshless-cells",
     "meshless-expr",
+    "meshless-freespace",
     "meshless-geometry",
     "meshless-neighbors",
     "meshless-output",
@@ -51,6 +52,8 @@ const WRAPPED: &[(&str, &str)] = &[
     ("kiddo", "meshless-neighbors"),
     ("plotters", "meshless-output"),
     ("rand_xoshiro", "meshless-geometry"),
+    ("realfft", "meshless-freespace"),
+    ("rustfft", "meshless-freespace"),
     ("sprs", "meshless-sparse"),
     ("toml", "meshless"),
     ("vtkio", "meshless-output"),

@@ -4,6 +4,7 @@ mod claims;
 mod cost;
 mod csv;
 mod figure;
+mod freespace;
 mod gfdm;
 mod hard;
 mod html;

@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::study::Study;
-use super::{cost, gfdm, hard, particle_difference};
+use super::{cost, freespace, gfdm, hard, particle_difference};
 
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
@@ -28,7 +28,7 @@ static SUITES: [Suite; 7] = [
         run: Some(particle_difference::run),
     },
     later("dcpse"),
-    later("freespace"),
+    Suite { name: "freespace", about: freespace::ABOUT, cases: &freespace::CASES, run: Some(freespace::run) },
     later("sharp"),
     Suite { name: "hard", about: hard::ABOUT, cases: &hard::CASES, run: Some(hard::run) },
     Suite { name: "cost", about: cost::ABOUT, cases: &cost::CASES, run: Some(cost::run) },

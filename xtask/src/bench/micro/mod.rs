@@ -1,6 +1,7 @@
 //! The building blocks one by one.
 
 pub(super) mod cells;
+pub(super) mod freespace;
 pub(super) mod neighbors;
 pub(super) mod sparse;
 pub(super) mod stencils;

@@ -1,0 +1,88 @@
+//! What can be wrong with a problem.
+
+use thiserror::Error;
+
+/// Why a mesh, a kernel, a plan or a source is refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FreeSpaceError {
+    /// A direction without cells.
+    #[error("direction {axis} has no cells; give at least one")]
+    NoCells {
+        /// Direction, 0 for x.
+        axis: usize,
+    },
+    /// A spacing, a corner or another length that cannot be.
+    #[error("{what} is {value}, which must be {expected}")]
+    Invalid {
+        /// What was given.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// An order that there is no kernel of.
+    #[error("no Gaussian kernel has order {order}; orders are even, from 2 to 20")]
+    Order {
+        /// What was asked for.
+        order: usize,
+    },
+    /// A period too short for a truncated kernel: images of the source would reach the box.
+    #[error(
+        "the period {period} in direction {axis} is shorter than {needed}, the box and the radius of truncation together"
+    )]
+    Period {
+        /// Direction.
+        axis: usize,
+        /// Period, a length.
+        period: f64,
+        /// The least period that suffices.
+        needed: f64,
+    },
+    /// A source of the wrong length.
+    #[error("the {what} has {got} values, the mesh has {expected} points")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        got: usize,
+        /// The length that it must have.
+        expected: usize,
+    },
+    /// A value that is not finite.
+    #[error("the {what} is {value} at point {index} of the mesh; values must be finite")]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Index in the array.
+        index: usize,
+    },
+    /// More memory than there is.
+    #[error("this mesh needs {needed} MB, {available} MB are available; use fewer cells")]
+    Memory {
+        /// Megabytes that the plan and one solve need.
+        needed: u64,
+        /// Megabytes that may be used.
+        available: u64,
+    },
+    /// An output that refers to a source or a direction that is not there.
+    #[error("{what}")]
+    Output {
+        /// What does not exist.
+        what: String,
+    },
+}
+
+impl FreeSpaceError {
+    /// Refuses a length that is not positive and finite.
+    pub(crate) fn unless_positive(what: &'static str, value: f64) -> Result<(), Self> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::Invalid { what, value, expected: "positive and finite" })
+        }
+    }
+}

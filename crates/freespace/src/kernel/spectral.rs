@@ -1,0 +1,40 @@
+//! All wave numbers below a limit and none above.
+
+use std::f64::consts::{LN_2, PI};
+
+use super::Radial;
+use crate::error::FreeSpaceError;
+use crate::special::{EULER, one_minus_j0_integral, sine_integral};
+
+/// The Green's function without its wave numbers above `1/sigma`: the limit of infinite order.
+///
+/// One dimension `-(r Si(rho) + sigma cos rho)/pi`, two
+/// `-(1/2 pi) [int_0^rho (1 - J0(u))/u du + ln(2 sigma) - gamma]`, three `Si(rho)/(2 pi^2 r)`, `rho = r/sigma`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spectral<const D: usize> {
+    sigma: f64,
+}
+
+impl<const D: usize> Spectral<D> {
+    /// The kernel of the wave numbers up to `1/sigma`; a mesh of spacing h resolves up to `pi/h`.
+    ///
+    /// # Errors
+    /// A sigma that is not positive and finite.
+    pub fn new(sigma: f64) -> Result<Self, FreeSpaceError> {
+        const { assert!(D >= 1 && D <= 3, "kernels have one, two or three dimensions") };
+        FreeSpaceError::unless_positive("smoothing radius", sigma)?;
+        Ok(Self { sigma })
+    }
+}
+
+impl<const D: usize> Radial for Spectral<D> {
+    fn value(&self, r: f64) -> f64 {
+        let rho = r / self.sigma;
+        match D {
+            1 => -(r * sine_integral(rho) + self.sigma * rho.cos()) / PI,
+            2 => -(one_minus_j0_integral(rho) + LN_2 + self.sigma.ln() - EULER) / (2.0 * PI),
+            _ if rho < f64::MIN_POSITIVE => 1.0 / (2.0 * PI * PI * self.sigma),
+            _ => sine_integral(rho) / (2.0 * PI * PI * r),
+        }
+    }
+}

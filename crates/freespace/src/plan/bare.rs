@@ -1,0 +1,44 @@
+//! The transforms alone.
+
+use rustfft::num_complex::Complex;
+
+use super::Plan;
+use super::real::Real;
+
+impl<const D: usize, T: Real> Plan<D, T> {
+    /// Runs the one-dimensional transforms that a solve for phi cannot do without – those of the lines that are not known to
+    /// be zero, there and back, each on the same line in the cache – and nothing else, on the calling thread. For
+    /// benchmarks: what a solve takes beyond this is what it takes for moving data.
+    pub fn bare_transforms(&self) {
+        let [x, y, z] = &self.engine.axes;
+        let (forward, inverse) = (&self.engine.real.forward, &self.engine.real.inverse);
+        let (mut real, mut half) = (forward.make_input_vec(), forward.make_output_vec());
+        let (mut there, mut back) = (forward.make_scratch_vec(), inverse.make_scratch_vec());
+        for _ in 0..y.n * z.n {
+            real.fill(T::one());
+            let forward = forward.process_with_scratch(&mut real, &mut half, &mut there);
+            half.fill(Complex::new(T::one(), T::zero()));
+            let inverse = inverse.process_with_scratch(&mut half, &mut real, &mut back);
+            debug_assert!(forward.is_ok() && inverse.is_ok(), "the buffers were made for this length");
+        }
+        for (axis, lines) in [(y, x.half() * z.n), (z, x.half() * y.len)] {
+            let mut line = vec![Complex::new(T::one(), T::zero()); axis.len];
+            let mut scratch = vec![Complex::default(); axis.scratch()];
+            if axis.len == 1 {
+                continue;
+            }
+            for _ in 0..lines {
+                line.fill(Complex::new(T::one(), T::zero()));
+                axis.forward.process_with_scratch(&mut line, &mut scratch);
+                axis.inverse.process_with_scratch(&mut line, &mut scratch);
+            }
+        }
+    }
+
+    /// Bytes that the plan keeps and that a solve with so many sources and outputs uses beside the fields themselves.
+    pub fn bytes(&self, sources: usize, outputs: usize) -> usize {
+        let [x, y, z] = &self.engine.axes;
+        let spectra = sources.max(outputs) * 2 * x.half() * y.n * z.n;
+        size_of::<T>() * (self.engine.kernel.len() + spectra)
+    }
+}

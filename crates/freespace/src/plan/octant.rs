@@ -1,0 +1,106 @@
+//! The Green's function in Fourier space: real, even in every direction, one octant of it kept.
+
+use rayon::prelude::*;
+
+use super::cosine;
+use crate::kernel::{Radial, Truncated};
+
+/// Values on the octant of offsets `0..shape` in each direction, the last one running fastest.
+pub(super) struct Octant {
+    pub(super) values: Vec<f64>,
+}
+
+impl Octant {
+    /// The transform of a kernel that is sampled at the offsets of the mesh, times the volume of a cell.
+    pub(super) fn of_radial(kernel: &dyn Radial, half: [usize; 3], spacing: [f64; 3]) -> Self {
+        let mut octant = Self { values: sample_radial(kernel, half, spacing) };
+        cosine::transform(&mut octant.values, half, [true; 3]);
+        let volume: f64 = spacing.iter().product();
+        octant.values.par_iter_mut().for_each(|v| *v *= volume);
+        octant
+    }
+
+    /// The same of a truncated kernel: sampled in Fourier space with the periods `2 (wide - 1)`, in which it is the
+    /// Green's function itself, brought to the offsets of the mesh and back.
+    pub(super) fn of_truncated<const D: usize>(
+        kernel: &Truncated<D>,
+        wide: [usize; 3],
+        half: [usize; 3],
+        spacing: [f64; 3],
+    ) -> Self {
+        let period = wide.map(|w| (2 * (w - 1)).max(1));
+        let unit: [f64; 3] = std::array::from_fn(|a| std::f64::consts::TAU / (period[a] as f64 * spacing[a]));
+        let transform = |k: f64| kernel.transform(k);
+        let mut values = sample_radial(&Function(transform), wide, unit);
+        cosine::transform(&mut values, wide, [true; 3]);
+        let all: f64 = period.iter().map(|&p| p as f64).product();
+        let mut octant = Self { values: crop(&values, wide, half) };
+        drop(values);
+        cosine::transform(&mut octant.values, half, [true; 3]);
+        octant.values.par_iter_mut().for_each(|v| *v /= all);
+        octant
+    }
+}
+
+/// A function of the distance.
+struct Function<F>(F);
+
+impl<F: Fn(f64) -> f64 + Sync> Radial for Function<F> {
+    fn value(&self, r: f64) -> f64 {
+        (self.0)(r)
+    }
+}
+
+/// Values at all offsets; for cubes each distinct distance is evaluated once.
+fn sample_radial(kernel: &dyn Radial, shape: [usize; 3], spacing: [f64; 3]) -> Vec<f64> {
+    let used: Vec<f64> = (0..3).filter(|&a| shape[a] > 1).map(|a| spacing[a]).collect();
+    if used.iter().all(|h| *h == used[0]) {
+        return sample_cubes(kernel, shape, used.first().copied().unwrap_or(1.0));
+    }
+    let squares: [Vec<f64>; 3] =
+        std::array::from_fn(|a| (0..shape[a]).map(|i| (i as f64 * spacing[a]).powi(2)).collect());
+    let mut values = vec![0.0; shape.iter().product()];
+    values.par_chunks_mut(shape[2]).enumerate().for_each(|(line, out)| {
+        let here = squares[0][line / shape[1]] + squares[1][line % shape[1]];
+        out.iter_mut().zip(&squares[2]).for_each(|(value, z)| *value = kernel.value((here + z).sqrt()));
+    });
+    values
+}
+
+/// Distances between the points of cubes are `h sqrt(i)`.
+fn sample_cubes(kernel: &dyn Radial, shape: [usize; 3], spacing: f64) -> Vec<f64> {
+    let farthest: usize = shape.iter().map(|&n| (n - 1) * (n - 1)).sum();
+    let mut occurs = vec![false; farthest + 1];
+    for i in 0..shape[0] {
+        for j in 0..shape[1] {
+            let here = i * i + j * j;
+            // Directions of equal length: the order of i, j and k does not matter.
+            let first = if shape[1] == shape[2] { j } else { 0 };
+            (first..shape[2]).for_each(|k| occurs[here + k * k] = true);
+        }
+    }
+    let table: Vec<f64> = occurs
+        .par_iter()
+        .enumerate()
+        .with_min_len(256)
+        .map(|(square, &used)| if used { kernel.value(spacing * (square as f64).sqrt()) } else { 0.0 })
+        .collect();
+    let mut values = vec![0.0; shape.iter().product()];
+    values.par_chunks_mut(shape[2]).enumerate().for_each(|(line, out)| {
+        let (i, j) = (line / shape[1], line % shape[1]);
+        out.iter_mut().enumerate().for_each(|(k, value)| *value = table[i * i + j * j + k * k]);
+    });
+    values
+}
+
+/// The corner of an array.
+fn crop(values: &[f64], wide: [usize; 3], half: [usize; 3]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(half.iter().product());
+    for i in 0..half[0] {
+        for j in 0..half[1] {
+            let start = (i * wide[1] + j) * wide[2];
+            out.extend_from_slice(&values[start..start + half[2]]);
+        }
+    }
+    out
+}

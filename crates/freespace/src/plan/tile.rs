@@ -1,0 +1,154 @@
+//! A few planes of the first direction's spectrum, on their way through the other two directions and back.
+
+use rustfft::num_complex::Complex;
+
+use super::engine::Engine;
+use super::output::Term;
+use super::real::Real;
+
+/// Columns that are gathered at once: four cache lines of complex numbers from each row.
+const COLUMNS: usize = 16;
+
+/// How much a tile holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shape {
+    /// Planes.
+    pub(super) block: usize,
+    /// Sources.
+    pub(super) sources: usize,
+    /// Outputs.
+    pub(super) outputs: usize,
+}
+
+/// Scratch of one thread.
+pub(super) struct Tile<T> {
+    shape: Shape,
+    /// For each source or output: rows of the third direction, in each the padded lines of all planes.
+    rows: Vec<Vec<Complex<T>>>,
+    /// For each source: padded columns.
+    columns: Vec<Vec<Complex<T>>>,
+    product: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
+}
+
+impl<T: Real> Tile<T> {
+    pub(super) fn new(engine: &Engine<T>, shape: Shape) -> Self {
+        let [_, y, z] = &engine.axes;
+        let zeros = |n| vec![Complex::default(); n];
+        Self {
+            shape,
+            rows: (0..shape.sources.max(shape.outputs)).map(|_| zeros(z.n * shape.block * y.len)).collect(),
+            columns: (0..shape.sources).map(|_| zeros(COLUMNS * z.len)).collect(),
+            product: zeros(COLUMNS * z.len),
+            scratch: zeros(y.scratch().max(z.scratch())),
+        }
+    }
+
+    /// Works on the planes from `first` on; `parts` has for each source or output, and for each row, the lines of these
+    /// planes.
+    pub(super) fn convolve(
+        &mut self,
+        engine: &Engine<T>,
+        first: usize,
+        parts: &mut [&mut [Complex<T>]],
+        terms: &[Vec<Term>],
+    ) {
+        let [_, y, z] = &engine.axes;
+        let width = parts.first().map_or(0, |p| p.len()) / y.n * y.len;
+        for source in 0..self.shape.sources {
+            for (row, part) in self.rows[source].chunks_exact_mut(width).zip(&parts[source * z.n..][..z.n]) {
+                for (line, values) in row.chunks_exact_mut(y.len).zip(part.chunks_exact(y.n)) {
+                    line[..y.n].copy_from_slice(values);
+                    line[y.n..].fill(Complex::default());
+                }
+                if y.len > 1 {
+                    y.forward.process_with_scratch(row, &mut self.scratch);
+                }
+            }
+        }
+        for start in (0..width).step_by(COLUMNS) {
+            self.columns(engine, first, width, start, terms);
+        }
+        for output in 0..self.shape.outputs {
+            for (row, part) in
+                self.rows[output].chunks_exact_mut(width).zip(&mut parts[output * z.n..][..z.n])
+            {
+                if y.len > 1 {
+                    y.inverse.process_with_scratch(row, &mut self.scratch);
+                }
+                for (line, values) in row.chunks_exact(y.len).zip(part.chunks_exact_mut(y.n)) {
+                    values.copy_from_slice(&line[..y.n]);
+                }
+            }
+        }
+    }
+
+    /// Transforms, multiplies and transforms back the columns from `start` on.
+    fn columns(&mut self, engine: &Engine<T>, first: usize, width: usize, start: usize, terms: &[Vec<Term>]) {
+        let [_, y, z] = &engine.axes;
+        let count = COLUMNS.min(width - start);
+        for (rows, columns) in self.rows.iter().zip(&mut self.columns) {
+            let columns = &mut columns[..count * z.len];
+            columns.chunks_exact_mut(z.len).for_each(|c| c[z.n..].fill(Complex::default()));
+            for (j, row) in rows.chunks_exact(width).take(z.n).enumerate() {
+                for (c, value) in row[start..start + count].iter().enumerate() {
+                    columns[c * z.len + j] = *value;
+                }
+            }
+            z.forward.process_with_scratch(columns, &mut self.scratch);
+        }
+        for (terms, rows) in terms.iter().zip(&mut self.rows) {
+            for c in 0..count {
+                let place = start + c;
+                let waves = [first + place / y.len, place % y.len];
+                let line = c * z.len..(c + 1) * z.len;
+                combine(engine, waves, terms, &self.columns, line.clone(), &mut self.product[line]);
+            }
+            let product = &mut self.product[..count * z.len];
+            z.inverse.process_with_scratch(product, &mut self.scratch);
+            for (j, row) in rows.chunks_exact_mut(width).take(z.n).enumerate() {
+                for (c, value) in row[start..start + count].iter_mut().enumerate() {
+                    *value = product[c * z.len + j];
+                }
+            }
+        }
+    }
+}
+
+/// A line of an output in Fourier space: Ĝ times its terms.
+fn combine<T: Real>(
+    engine: &Engine<T>,
+    waves: [usize; 2],
+    terms: &[Term],
+    sources: &[Vec<Complex<T>>],
+    line: std::ops::Range<usize>,
+    out: &mut [Complex<T>],
+) {
+    let [x, y, z] = &engine.axes;
+    let half = z.half();
+    let kernel = &engine.kernel[(waves[0] * y.half() + y.fold(waves[1])) * half..][..half];
+    for (index, term) in terms.iter().enumerate() {
+        let source = &sources[term.source][line.clone()];
+        let sign = T::rounded(term.sign);
+        let times_i = |s: &Complex<T>, k: T| Complex::new(-k * s.im, k * s.re);
+        let add = |out: &mut Complex<T>, value: Complex<T>| {
+            *out = if index == 0 { value } else { *out + value };
+        };
+        match term.axis {
+            None => out.iter_mut().zip(source).for_each(|(o, s)| add(o, s * sign)),
+            Some(2) => {
+                let waves = z.wave.iter().map(|k| *k * sign);
+                out.iter_mut().zip(source).zip(waves).for_each(|((o, s), k)| add(o, times_i(s, k)));
+            }
+            Some(axis) => {
+                let k = sign * if axis == 0 { x.wave[waves[0]] } else { y.wave[waves[1]] };
+                out.iter_mut().zip(source).for_each(|(o, s)| add(o, times_i(s, k)));
+            }
+        }
+    }
+    let (low, high) = out.split_at_mut(half);
+    low.iter_mut().zip(kernel).for_each(|(o, g)| *o = *o * *g);
+    // The other wave numbers have the magnitudes of those before, from the far end.
+    let mirrored = kernel[1..].iter().rev().skip(1 - z.len % 2);
+    high.iter_mut().zip(mirrored).for_each(|(o, g)| *o = *o * *g);
+}

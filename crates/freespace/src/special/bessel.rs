@@ -1,0 +1,70 @@
+//! Integrals and differences of Bessel functions.
+
+use super::{ASYMPTOTIC, EULER, MILLER_MARGIN, SMALL};
+
+/// `1 - J0(x)` without cancellation, x >= 0.
+pub(crate) fn one_minus_j0(x: f64) -> f64 {
+    if x >= SMALL { 1.0 - libm::j0(x) } else { series(x, |_| 1.0) }
+}
+
+/// `int_0^x (1 - J0(u))/u du` for x >= 0.
+pub(crate) fn one_minus_j0_integral(x: f64) -> f64 {
+    if x < SMALL {
+        series(x, |k| 1.0 / (2.0 * k))
+    } else if x < ASYMPTOTIC {
+        neumann(x)
+    } else {
+        (x / 2.0).ln() + EULER + tail(x)
+    }
+}
+
+/// `sum_{k > 0} (-1)^(k+1) (x/2)^2k / k!^2 weight(k)`.
+fn series(x: f64, weight: impl Fn(f64) -> f64) -> f64 {
+    let square = x * x / 4.0;
+    let (mut power, mut sum, mut k) = (1.0, 0.0, 0.0);
+    loop {
+        k += 1.0;
+        power *= square / (k * k);
+        let sign = if k % 2.0 == 1.0 { 1.0 } else { -1.0 };
+        let term = sign * power * weight(k);
+        sum += term;
+        if term.abs() <= f64::EPSILON / 8.0 * sum.abs() {
+            return sum;
+        }
+    }
+}
+
+/// `2/x sum_k (2k+3) H_(k+1) J_(2k+3)(x)` (Abramowitz and Stegun 11.1.20), H the harmonic numbers; the Bessel functions
+/// come from Miller's recurrence, normalised by `J_0 + 2 (J_2 + J_4 + ...) = 1`.
+fn neumann(x: f64) -> f64 {
+    let start = (x as usize + MILLER_MARGIN) | 1;
+    let mut harmonic: f64 = (1..=(start - 1) / 2).map(|k| 1.0 / k as f64).sum();
+    let (mut above, mut here) = (0.0, 1e-150);
+    let (mut sum, mut norm) = (0.0, 0.0);
+    for n in (0..=start).rev() {
+        if n == 0 {
+            norm += here;
+        } else if n % 2 == 0 {
+            norm += 2.0 * here;
+        } else if n >= 3 {
+            sum += n as f64 * harmonic * here;
+            harmonic -= 2.0 / (n - 1) as f64;
+        }
+        (above, here) = (here, 2.0 * n as f64 / x * here - above);
+    }
+    2.0 / x * sum / norm
+}
+
+/// `int_x^inf J0(u)/u du` by its asymptotic series (Abramowitz and Stegun 11.1.22 to 11.1.24).
+fn tail(x: f64) -> f64 {
+    let square = 4.0 / (x * x);
+    let (mut g0, mut g1) = (0.0, 0.0);
+    let (mut term, mut k) = (1.0_f64, 0.0);
+    while term.abs() > f64::EPSILON / 8.0 && k < x / 2.0 {
+        g0 += term;
+        g1 += term * (k + 1.0);
+        k += 1.0;
+        term *= -k * k * square;
+    }
+    2.0 * g1 * libm::j0(x) / (x * x) - g0 * libm::j1(x) / x
+}

@@ -1,0 +1,71 @@
+//! Convolution in free space against the bare transforms of its lines.
+
+use meshless_freespace::{Centring, Kernel, Mesh, Output, Plan, Workspace};
+
+use crate::bench::measure::{on_one_and_two, seconds};
+use crate::bench::table::Table;
+
+const REPETITIONS: usize = 5;
+
+pub(in crate::bench) fn run() -> crate::bench::Outcome {
+    let mut table = Table::new(&[
+        "phi, 1 thread",
+        "transforms alone, s",
+        "solve, s",
+        "ratio (≤ 1.25)",
+        "set-up, solves (≤ 1)",
+        "doubles per point (≤ 5.5)",
+        "2 threads, speed-up",
+        "with grad phi, solves",
+    ]);
+    measure::<2>([1024; 2], &mut table)?;
+    measure::<3>([128; 3], &mut table)?;
+    measure::<3>([256; 3], &mut table)?;
+    Ok(vec![table])
+}
+
+fn measure<const D: usize>(
+    cells: [usize; D],
+    table: &mut Table,
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let mesh = Mesh::of_box([0.0; D], [1.0; D], cells, Centring::Cell)?;
+    let source = mesh.sample(|p| p.iter().map(|x| x * (1.0 - x)).product());
+    let kernel = Kernel::gaussian(10);
+    let [set_up, _] = on_one_and_two(1, || Plan::<D>::new(&mesh, kernel))?;
+    let plan: Plan<D> = Plan::new(&mesh, kernel)?;
+    let phi = [Output::Potential { source: 0 }];
+    let all: Vec<Output> = (0..D).map(|axis| Output::Gradient { source: 0, axis }).chain(phi).collect();
+    let bare = seconds(REPETITIONS, || plan.bare_transforms());
+    let [one, two] = solves(&plan, &source, &phi)?;
+    let [with_gradient, _] = solves(&plan, &source, &all)?;
+    table.row(
+        &format!("{D}-D, N = {}", cells[0]),
+        vec![
+            format!("{bare:.3}"),
+            format!("{one:.3}"),
+            format!("{:.2}", one / bare),
+            format!("{:.2}", set_up / one),
+            format!("{:.2}", plan.bytes(1, 1) as f64 / (8 * mesh.len()) as f64),
+            format!("{:.2}", one / two),
+            format!("{:.2}", with_gradient / one),
+        ],
+    );
+    Ok(())
+}
+
+/// Seconds of a solve on one thread and on two, in memory that was used before.
+fn solves<const D: usize>(
+    plan: &Plan<D>,
+    source: &[f64],
+    wanted: &[Output],
+) -> Result<[f64; 2], Box<dyn std::error::Error + Send + Sync>> {
+    let mut times = [0.0; 2];
+    for (threads, time) in times.iter_mut().enumerate() {
+        let (mut workspace, mut fields) = (Workspace::default(), Vec::new());
+        plan.solve(&[source], wanted, &mut workspace, &mut fields)?;
+        *time = meshless::on_threads(threads + 1, || {
+            seconds(REPETITIONS, || plan.solve(&[source], wanted, &mut workspace, &mut fields))
+        })?;
+    }
+    Ok(times)
+}

@@ -1,0 +1,97 @@
+//! Suite `freespace`: the convergence tests of Hejlesen and Walther (2016), section 3, and a comparison with another code.
+
+mod checks;
+mod problems;
+mod runs;
+mod sections;
+
+use meshless_freespace::Kernel;
+
+use super::claims::Claims;
+use super::options::{Effort, Options};
+use super::runner::progress;
+use super::study::Study;
+use problems::Problem;
+use runs::Run;
+
+const SUITE: &str = "freespace";
+
+pub(super) const ABOUT: &str = "Poisson's equation in free space: the bump in 2-D and the torus in 3-D of Hejlesen and Walther (2016) with Gaussian \
+    kernels of order 2 to 20, the spectral and the truncated kernel; the product of bumps that another code was measured on.";
+
+pub(super) const CASES: [&str; 4] = ["bump", "torus", "product-2d", "product-3d"];
+
+const METHOD: &str = "free-space";
+
+/// As in the paper.
+const fn paper(order: usize) -> Kernel {
+    Kernel::Gaussian { order, smoothing: Some(2.0) }
+}
+
+/// Orders that are looked at.
+const ORDERS: [usize; 6] = [2, 4, 6, 8, 10, 20];
+
+fn kernels() -> impl Iterator<Item = Kernel> {
+    let ours = [10, 20].map(Kernel::gaussian);
+    ORDERS.into_iter().map(paper).chain(ours).chain([Kernel::Spectral, Kernel::Truncated])
+}
+
+/// Points along the longest direction, for each effort.
+fn sizes(case: &str, effort: Effort) -> &'static [usize] {
+    match (case, effort) {
+        ("bump", Effort::Quick) => &[32, 64, 128, 256, 512],
+        ("bump", _) => &[32, 64, 128, 256, 512, 1024],
+        ("torus", Effort::Quick) => &[32, 64],
+        ("torus", Effort::Default) => &[32, 64, 128],
+        ("torus", Effort::Full) => &[32, 64, 128, 256],
+        ("product-2d", _) => &[64, 128, 256],
+        (_, Effort::Quick) => &[32, 64],
+        _ => &[32, 64, 128],
+    }
+}
+
+pub(super) fn run(options: &Options) -> Study {
+    let mut claims = Claims::new(SUITE, options.is_filtered());
+    let (mut runs, mut failures) = (Vec::new(), Vec::new());
+    for case in CASES.into_iter().filter(|case| options.wants(case, METHOD)) {
+        for &n in sizes(case, options.effort) {
+            let done = match case {
+                "bump" => ladder(case, problems::patch(n)),
+                "torus" => ladder(case, problems::torus(n)),
+                "product-2d" => ladder(case, problems::product::<2>(n)),
+                _ => ladder(case, problems::product::<3>(n)),
+            };
+            for outcome in done {
+                match outcome {
+                    Ok(run) => runs.push(run),
+                    Err(error) => failures.push(error),
+                }
+            }
+        }
+    }
+    checks::all(&runs, options, &mut claims);
+    failures.iter().for_each(|f| eprintln!("run failed: {f}"));
+    claims.at_most("all", "runs that ended with an error", Some(failures.len() as f64), 0.0);
+    Study {
+        suite: SUITE,
+        outcomes: runs.iter().map(|run| runs::outcome(run, &runs)).collect(),
+        claims: claims.by_case(&CASES),
+        sections: sections::sections(&runs),
+    }
+}
+
+/// One problem with all kernels.
+fn ladder<const D: usize>(
+    case: &'static str,
+    problem: Result<Problem<D>, String>,
+) -> Vec<Result<Run, String>> {
+    match problem {
+        Err(error) => vec![Err(error)],
+        Ok(problem) => kernels()
+            .map(|kernel| {
+                progress(&format!("{SUITE} {case} {} {}", problem.mesh.points()[0], runs::label(kernel)));
+                runs::run(case, kernel, &problem)
+            })
+            .collect(),
+    }
+}
