@@ -23,7 +23,7 @@ pub(super) fn sections(runs: &[Run]) -> Vec<Section> {
 }
 
 fn section(runs: &[Run], case: &'static str, title: &'static str, about: &'static str) -> Section {
-    let error = |r: &Run| if case.starts_with("product") { r.linf } else { r.l2 };
+    let error = |r: &Run| if case.starts_with("product") { r.worst } else { r.l2 };
     let curves = |x: fn(&Run) -> f64| -> Vec<Curve> {
         kernels()
             .map(|kernel| Curve {
