@@ -68,6 +68,53 @@ pub enum FreeSpaceError {
         /// Megabytes that may be used.
         available: u64,
     },
+    /// A kernel that has no estimate of its error, or a boundary that it cannot have.
+    #[error("{what}")]
+    Kernel {
+        /// What does not go together.
+        what: String,
+    },
+    /// A tolerance that the mesh does not allow.
+    #[error(
+        "the tolerance {tolerance:e} cannot be met on this mesh, {error:e} is the least; use a finer mesh"
+    )]
+    Tolerance {
+        /// What was asked for.
+        tolerance: f64,
+        /// The error that is expected of the best kernel.
+        error: f64,
+    },
+    /// A source that no periodic potential belongs to.
+    #[error(
+        "the mean of the source is {mean:e} of its largest value, and no direction is open: subtract it, or allow that with \
+         `remove_mean`"
+    )]
+    Mean {
+        /// Mean over largest magnitude.
+        mean: f64,
+    },
+    /// A patch that cannot be.
+    #[error("patch {patch}: {what}")]
+    Patch {
+        /// Which patch, counted from 0.
+        patch: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A particle where the mesh does not reach around it.
+    #[error(
+        "particle {particle} at {at} in direction {axis} has no {points} points of the mesh on each side; enlarge the box"
+    )]
+    Particle {
+        /// Which particle, counted from 0.
+        particle: usize,
+        /// Direction.
+        axis: usize,
+        /// Its coordinate there.
+        at: f64,
+        /// Points that are needed on each side.
+        points: usize,
+    },
     /// An output that refers to a source or a direction that is not there.
     #[error("{what}")]
     Output {

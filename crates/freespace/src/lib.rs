@@ -3,10 +3,16 @@
 mod error;
 mod kernel;
 mod mesh;
+mod particles;
 mod plan;
+mod refine;
 mod special;
+mod spectrum;
 
 pub use error::FreeSpaceError;
 pub use kernel::{BandPass, Gaussian, Kernel, Radial, Spectral, Truncated, default_smoothing};
 pub use mesh::{Centring, Mesh};
-pub use plan::{Output, Plan, PlanParams, Real, Workspace};
+pub use particles::Spread;
+pub use plan::{Boundary, Face, Output, Plan, PlanParams, Real, Workspace};
+pub use refine::{Fields, Patch, RefineParams, RefinedPlan, Superposition, m4_prime, m6_star, suggest};
+pub use spectrum::{Choice, Spectrum};

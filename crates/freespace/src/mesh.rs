@@ -12,6 +12,9 @@ pub enum Centring {
     Node,
 }
 
+/// Fractions of the spacing that points of nested meshes lie at: all ratios up to 16, and half of them.
+const SUBDIVISIONS: f64 = 1_441_440.0;
+
 /// A regular mesh with cells of any aspect ratio. Arrays of values have x running fastest, then y, then z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mesh<const D: usize> {
@@ -142,6 +145,26 @@ impl<const D: usize> Mesh<D> {
             index /= n;
             i
         })
+    }
+
+    /// The place in an array of the point with these indices.
+    pub fn index(&self, indices: [usize; D]) -> usize {
+        (0..D).rev().fold(0, |all, a| all * self.points[a] + indices[a])
+    }
+
+    /// The mesh with `cells` more on every side.
+    pub(crate) fn grown(&self, cells: usize) -> Result<Self, FreeSpaceError> {
+        let min = std::array::from_fn(|a| self.min[a] - cells as f64 * self.spacing[a]);
+        Self::new(min, self.spacing, self.cells().map(|n| n + 2 * cells), self.centring)
+    }
+
+    /// Where the points of this mesh lie in another one, in units of its spacing from its first point.
+    pub(crate) fn places_in(&self, other: &Self) -> impl Fn(usize, usize) -> f64 {
+        let start: [f64; D] =
+            std::array::from_fn(|a| (self.coordinate(a, 0) - other.coordinate(a, 0)) / other.spacing[a]);
+        let step: [f64; D] = std::array::from_fn(|a| self.spacing[a] / other.spacing[a]);
+        // Points of nested meshes lie at multiples of a fraction of the spacing; round-off must not move them across one.
+        move |axis, i| ((start[axis] + i as f64 * step[axis]) * SUBDIVISIONS).round() / SUBDIVISIONS
     }
 
     /// Position of the point at place `index` of an array.

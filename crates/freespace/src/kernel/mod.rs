@@ -3,11 +3,13 @@
 mod band_pass;
 mod gaussian;
 mod laguerre;
+mod screened;
 mod spectral;
 mod truncated;
 
 pub use band_pass::BandPass;
 pub use gaussian::Gaussian;
+pub(crate) use screened::Screened;
 pub use spectral::Spectral;
 pub use truncated::Truncated;
 

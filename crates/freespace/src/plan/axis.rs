@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use realfft::{ComplexToReal, RealToComplex};
 use rustfft::Fft;
+use rustfft::num_complex::Complex;
 
+use super::boundary::Continuation;
 use super::real::Real;
 
 /// Number of points, padded length and transforms of one direction.
@@ -14,6 +16,10 @@ pub(super) struct Axis<T: Real> {
     pub(super) n: usize,
     /// Length of the transforms.
     pub(super) len: usize,
+    /// Values that a line begins with; the rest are images or zeros.
+    own: usize,
+    /// Images: place, index of the value, sign.
+    images: Vec<(usize, usize, T)>,
     /// The wave number that belongs to each place of a transform, for derivatives: zero at the Nyquist frequency, whose
     /// derivative is not known at the points.
     pub(super) wave: Vec<T>,
@@ -40,9 +46,52 @@ impl<T: Real> std::fmt::Debug for RealTransforms<T> {
 }
 
 impl<T: Real> Axis<T> {
-    pub(super) fn new(n: usize, len: usize, spacing: f64) -> Self {
+    pub(super) fn new(n: usize, continuation: &Continuation, spacing: f64) -> Self {
+        let len = continuation.len;
         let [forward, inverse] = T::complex(len);
-        Self { n, len, wave: waves(len, spacing).map(T::rounded).collect(), forward, inverse }
+        Self {
+            n,
+            len,
+            own: continuation.own,
+            images: continuation
+                .images
+                .iter()
+                .map(|&(place, i, sign)| (place, i, T::rounded(sign)))
+                .collect(),
+            wave: waves(len, spacing).map(T::rounded).collect(),
+            forward,
+            inverse,
+        }
+    }
+
+    /// Continues a line of values to the length of the transforms.
+    pub(super) fn load<V>(&self, values: &[V], line: &mut [V])
+    where
+        V: Copy + Default + std::ops::Mul<T, Output = V>,
+    {
+        line[..self.own].copy_from_slice(&values[..self.own]);
+        line[self.own..].fill(V::default());
+        for &(place, index, sign) in &self.images {
+            line[place] = values[index] * sign;
+        }
+    }
+
+    /// The same where the line begins with the values already.
+    pub(super) fn continue_in_place<V>(&self, line: &mut [V])
+    where
+        V: Copy + Default + std::ops::Mul<T, Output = V>,
+    {
+        line[self.own..].fill(V::default());
+        for &(place, index, sign) in &self.images {
+            line[place] = line[index] * sign;
+        }
+    }
+
+    /// The values at the points; beyond a period they begin again.
+    pub(super) fn store<V: Copy>(&self, line: &[V], values: &mut [V]) {
+        let once = self.n.min(self.len);
+        values[..once].copy_from_slice(&line[..once]);
+        values[once..self.n].copy_from_slice(&line[..self.n - once]);
     }
 
     /// Places of a transform up to and including the Nyquist frequency.
@@ -53,6 +102,19 @@ impl<T: Real> Axis<T> {
     /// The place below the Nyquist frequency with the same magnitude of the wave number.
     pub(super) fn fold(&self, place: usize) -> usize {
         place.min(self.len - place)
+    }
+
+    /// The factors that move a line by `shift` points, `exp(i k shift h)`; at the Nyquist frequency the cosine, since the
+    /// sine is not known there.
+    pub(super) fn phases(&self, shift: f64) -> Vec<Complex<T>> {
+        (0..self.len)
+            .map(|k| {
+                let signed = if 2 * k <= self.len { k as f64 } else { k as f64 - self.len as f64 };
+                let (sin, cos) = (TAU * signed * shift / self.len as f64).sin_cos();
+                let sin = if 2 * k == self.len { 0.0 } else { sin };
+                Complex::new(T::rounded(cos), T::rounded(sin))
+            })
+            .collect()
     }
 
     /// Scratch that either transform needs.

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 
 use super::axis::{Axis, RealTransforms};
-use super::output::Term;
+use super::estimate::Estimate;
+use super::output::Wanted;
 use super::real::Real;
 use super::tile::{Shape, Tile};
 
@@ -25,6 +26,8 @@ pub(super) struct Engine<T: Real> {
     pub(super) real: RealTransforms<T>,
     /// Ĝ over the number of points of all transforms, on the octant of wave numbers, the last direction fastest.
     pub(super) kernel: Vec<T>,
+    /// The error of a Gaussian kernel, if it is one.
+    pub(super) estimate: Option<Estimate<T>>,
 }
 
 /// The half-spectra of the first direction, reused from solve to solve.
@@ -34,18 +37,18 @@ pub(super) struct Spectra<T> {
 }
 
 impl<T: Real> Engine<T> {
-    /// Convolves the sources; one output for each list of terms.
+    /// Convolves the sources; one output for each that is wanted.
     pub(super) fn run(
         &self,
         sources: &[&[T]],
-        terms: &[Vec<Term>],
+        wanted: &[Wanted<T>],
         spectra: &mut Spectra<T>,
         outputs: &mut [Vec<T>],
     ) {
         let [nx, ny, nz] = [self.axes[0].n, self.axes[1].n, self.axes[2].n];
         let slab = self.axes[0].half() * ny;
         let arrays = &mut spectra.arrays;
-        arrays.resize_with(sources.len().max(terms.len()), Vec::new);
+        arrays.resize_with(sources.len().max(wanted.len()), Vec::new);
         arrays.iter_mut().for_each(|a| a.resize(slab * nz, Complex::default()));
         for (source, array) in sources.iter().zip(arrays.iter_mut()) {
             self.forward_first(source, array);
@@ -60,10 +63,10 @@ impl<T: Real> Engine<T> {
                 }
             }
         }
-        let shape = Shape { block, sources: sources.len(), outputs: terms.len() };
+        let shape = Shape { block, sources: sources.len(), outputs: wanted.len() };
         planes.par_iter_mut().enumerate().for_each_init(
             || Tile::new(self, shape),
-            |tile, (index, parts)| tile.convolve(self, index * block, parts, terms),
+            |tile, (index, parts)| tile.convolve(self, index * block, parts, wanted),
         );
         for (array, output) in arrays.iter().zip(outputs.iter_mut()) {
             output.resize(nx * ny * nz, T::default());
@@ -82,8 +85,7 @@ impl<T: Real> Engine<T> {
                 for (group, rows) in values.chunks(LINES * x.n).enumerate() {
                     let count = rows.len() / x.n;
                     for (row, line) in rows.chunks_exact(x.n).zip(lines.chunks_exact_mut(half)) {
-                        padded[..x.n].copy_from_slice(row);
-                        padded[x.n..].fill(T::zero());
+                        x.load(row, padded);
                         let outcome = plan.process_with_scratch(padded, line, scratch);
                         debug_assert!(outcome.is_ok(), "the buffers were made for this length");
                     }
@@ -122,7 +124,7 @@ impl<T: Real> Engine<T> {
                         }
                         let outcome = plan.process_with_scratch(line, padded, scratch);
                         debug_assert!(outcome.is_ok(), "the buffers were made for this length");
-                        row.copy_from_slice(&padded[..x.n]);
+                        x.store(padded, row);
                     }
                 }
             },

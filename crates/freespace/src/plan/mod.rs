@@ -2,8 +2,11 @@
 
 mod axis;
 mod bare;
+mod boundary;
+mod build;
 mod cosine;
 mod engine;
+mod estimate;
 mod memory;
 mod octant;
 mod output;
@@ -11,36 +14,51 @@ mod real;
 mod tile;
 
 use crate::error::FreeSpaceError;
-use crate::kernel::{Gaussian, Kernel, Spectral, Truncated, default_smoothing};
+use crate::kernel::{Kernel, Radial};
 use crate::mesh::Mesh;
-use axis::{Axis, RealTransforms, fast_length};
+use build::{Layout, slot};
 use engine::{Engine, Spectra};
-use octant::Octant;
 
+pub use boundary::{Boundary, Face};
+pub(crate) use build::passed;
 pub use output::Output;
+use output::Wanted;
 pub use real::Real;
 
 /// How a plan is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanParams {
+pub struct PlanParams<const D: usize> {
     /// The Green's function.
     pub kernel: Kernel,
+    /// What holds in each direction; free space unless said otherwise.
+    pub boundaries: [Boundary; D],
+    /// Where no direction is open, a potential belongs only to a source whose mean is zero: subtract the mean of others
+    /// rather than refuse them. The potential has zero mean then.
+    pub remove_mean: bool,
     /// Megabytes that the plan and a solve for phi may take; `None` takes what the system says is available.
     pub memory_mb: Option<u64>,
 }
 
-impl Default for PlanParams {
-    /// Order 10.
+impl<const D: usize> Default for PlanParams<D> {
+    /// Order 10 in free space.
     fn default() -> Self {
-        Self { kernel: Kernel::gaussian(10), memory_mb: None }
+        Self {
+            kernel: Kernel::gaussian(10),
+            boundaries: [Boundary::OPEN; D],
+            remove_mean: false,
+            memory_mb: None,
+        }
     }
 }
 
-impl From<Kernel> for PlanParams {
+impl<const D: usize> From<Kernel> for PlanParams<D> {
     fn from(kernel: Kernel) -> Self {
         Self { kernel, ..Self::default() }
     }
 }
+
+/// Mean of a source over its largest magnitude that counts as zero: the round-off of sums.
+const NO_MEAN: f64 = 1e-10;
 
 /// A convolution with a Green's function in free space, planned once and used for many sources.
 ///
@@ -64,8 +82,10 @@ impl From<Kernel> for PlanParams {
 #[derive(Debug)]
 pub struct Plan<const D: usize, T: Real = f64> {
     mesh: Mesh<D>,
-    kernel: Kernel,
     engine: Engine<T>,
+    /// Where no direction is open and a constant is not determined: how often each point counts in its period, in each
+    /// direction, and whether a mean is taken away.
+    closed: Option<([Vec<f64>; D], bool)>,
 }
 
 /// Memory that solves use, to be kept between them.
@@ -74,53 +94,52 @@ pub struct Workspace<T: Real = f64> {
     spectra: Spectra<T>,
 }
 
-/// The direction of the engine that a direction of the mesh is: planes of two-dimensional meshes are lines.
-fn slot<const D: usize>(axis: usize) -> usize {
-    if D == 2 && axis == 1 { 2 } else { axis }
-}
-
 impl<const D: usize, T: Real> Plan<D, T> {
-    /// Plans convolutions on `mesh`: pads every direction to at least twice its points and to a fast length, and
+    /// Plans convolutions on `mesh`: pads every open direction to at least twice its points and to a fast length, and
     /// transforms the Green's function.
     ///
     /// # Errors
     /// A kernel that does not exist, or more memory than there is.
-    pub fn new(mesh: &Mesh<D>, params: impl Into<PlanParams>) -> Result<Self, FreeSpaceError> {
+    pub fn new(mesh: &Mesh<D>, params: impl Into<PlanParams<D>>) -> Result<Self, FreeSpaceError> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let params = params.into();
-        let (mut points, mut spacing) = ([1; 3], [1.0; 3]);
-        for axis in 0..D {
-            (points[slot::<D>(axis)], spacing[slot::<D>(axis)]) = (mesh.points()[axis], mesh.spacing()[axis]);
-        }
-        let lengths: [usize; 3] =
-            std::array::from_fn(
-                |slot| {
-                    if slot_is_used::<D>(slot) { fast_length(2 * points[slot]) } else { 1 }
-                },
-            );
-        let wide = match params.kernel {
-            Kernel::Truncated => Some(wide_lengths(mesh, lengths, truncation_radius(mesh))),
-            _ => None,
-        };
-        memory::check::<T>(points, lengths, wide, params.memory_mb)?;
-        let octant = octant(mesh, params.kernel, lengths, wide, spacing)?;
-        let all: f64 = lengths.iter().map(|&n| n as f64).product();
-        let engine = Engine {
-            axes: std::array::from_fn(|a| Axis::new(points[a], lengths[a], spacing[a])),
-            real: RealTransforms::new(lengths[0]),
-            kernel: octant.values.iter().map(|g| T::rounded(g / all)).collect(),
-        };
-        Ok(Self { mesh: *mesh, kernel: params.kernel, engine })
+        let layout = Layout::with_boundaries(mesh, params.boundaries)?;
+        let engine = build::engine(mesh, &layout, params.kernel, params.memory_mb)?;
+        let closed = layout.is_closed::<D>().then(|| {
+            (
+                std::array::from_fn(|a| layout.lines[slot::<D>(a)].weights(mesh.points()[a])),
+                params.remove_mean,
+            )
+        });
+        Ok(Self { mesh: *mesh, engine, closed })
+    }
+
+    /// Plans convolutions with any function of the distance, in free space.
+    ///
+    /// # Errors
+    /// More memory than there is.
+    pub fn with_radial(mesh: &Mesh<D>, kernel: &dyn Radial) -> Result<Self, FreeSpaceError> {
+        const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
+        let layout = Layout::with_boundaries(mesh, [Boundary::OPEN; D])?;
+        memory::check::<T>(layout.points, layout.lengths(), None, None)?;
+        Ok(Self { mesh: *mesh, engine: layout.engine(&layout.radial(kernel), None), closed: None })
+    }
+
+    /// The same without padding, for a function that vanishes beyond some distance: results are right at the points that
+    /// are farther than that from the edge of the mesh.
+    ///
+    /// # Errors
+    /// More memory than there is.
+    pub fn with_compact(mesh: &Mesh<D>, kernel: &dyn Radial) -> Result<Self, FreeSpaceError> {
+        const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
+        let layout = Layout::compact(mesh);
+        memory::check::<T>(layout.points, layout.lengths(), None, None)?;
+        Ok(Self { mesh: *mesh, engine: layout.engine(&layout.radial(kernel), None), closed: None })
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh<D> {
         &self.mesh
-    }
-
-    /// The kernel.
-    pub fn kernel(&self) -> Kernel {
-        self.kernel
     }
 
     /// Lengths of the transforms in each direction.
@@ -144,7 +163,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
     ///
     /// # Errors
     /// Sources of the wrong length or with values that are not finite, outputs that refer to sources or directions that
-    /// are not there.
+    /// are not there; where no direction is open, a source with a mean.
     pub fn solve(
         &self,
         sources: &[&[T]],
@@ -152,73 +171,71 @@ impl<const D: usize, T: Real> Plan<D, T> {
         workspace: &mut Workspace<T>,
         outputs: &mut Vec<Vec<T>>,
     ) -> Result<(), FreeSpaceError> {
+        self.solve_shifted(sources, wanted, [0.0; D], workspace, outputs)
+    }
+
+    /// The same at points that lie `shift` spacings from those of the mesh, by a shift in Fourier space.
+    ///
+    /// # Errors
+    /// As for [`Self::solve`].
+    pub fn solve_shifted(
+        &self,
+        sources: &[&[T]],
+        wanted: &[Output],
+        shift: [f64; D],
+        workspace: &mut Workspace<T>,
+        outputs: &mut Vec<Vec<T>>,
+    ) -> Result<(), FreeSpaceError> {
         for source in sources {
             check_values("source", source, self.mesh.len())?;
+            self.check_mean(source)?;
         }
-        let mut terms = Vec::with_capacity(wanted.len());
-        for output in wanted {
-            let mut of_output = output.terms::<D>(sources.len())?;
-            of_output.iter_mut().for_each(|t| t.axis = t.axis.map(slot::<D>));
-            terms.push(of_output);
-        }
+        let wanted: Vec<Wanted<T>> = wanted
+            .iter()
+            .map(|&output| self.wanted(output, sources.len(), shift))
+            .collect::<Result<_, _>>()?;
         outputs.resize_with(wanted.len(), Vec::new);
-        self.engine.run(sources, &terms, &mut workspace.spectra, outputs);
+        self.engine.run(sources, &wanted, &mut workspace.spectra, outputs);
         Ok(())
     }
-}
 
-fn slot_is_used<const D: usize>(used: usize) -> bool {
-    (0..D).any(|axis| slot::<D>(axis) == used)
-}
-
-/// The distance of opposite corners, beyond which no two points are.
-fn truncation_radius<const D: usize>(mesh: &Mesh<D>) -> f64 {
-    let side = |a: usize| mesh.points()[a] as f64 * mesh.spacing()[a];
-    (0..D).map(|a| side(a).powi(2)).sum::<f64>().sqrt()
-}
-
-/// Lengths of the transforms that a truncated kernel is sampled with.
-fn wide_lengths<const D: usize>(mesh: &Mesh<D>, lengths: [usize; 3], radius: f64) -> [usize; 3] {
-    let mut wide = [1; 3];
-    for axis in 0..D {
-        let reach = mesh.points()[axis] + (radius / mesh.spacing()[axis]).ceil() as usize;
-        wide[slot::<D>(axis)] = fast_length(reach).max(lengths[slot::<D>(axis)]);
+    /// An output in terms of the engine.
+    fn wanted(&self, output: Output, sources: usize, shift: [f64; D]) -> Result<Wanted<T>, FreeSpaceError> {
+        let mut terms = output.terms::<D>(sources)?;
+        terms.iter_mut().for_each(|t| t.axis = t.axis.map(slot::<D>));
+        if output.is_estimate() && self.engine.estimate.is_none() {
+            return Err(FreeSpaceError::Kernel {
+                what: "only plans of Gaussian kernels have an estimate of the error".to_owned(),
+            });
+        }
+        let phases = shift.iter().any(|s| *s != 0.0).then(|| {
+            let mut along = [0.0; 3];
+            (0..D).for_each(|a| along[slot::<D>(a)] = shift[a]);
+            std::array::from_fn(|a| self.engine.axes[a].phases(along[a]))
+        });
+        Ok(Wanted { terms, estimate: output.is_estimate(), phases })
     }
-    wide
-}
 
-fn octant<const D: usize>(
-    mesh: &Mesh<D>,
-    kernel: Kernel,
-    lengths: [usize; 3],
-    wide: Option<[usize; 3]>,
-    spacing: [f64; 3],
-) -> Result<Octant, FreeSpaceError> {
-    let half = lengths.map(|n| n / 2 + 1);
-    let coarsest = mesh.spacing().into_iter().fold(0.0, f64::max);
-    match (kernel, wide) {
-        (Kernel::Truncated, Some(wide)) => {
-            let kernel = Truncated::<D>::new(truncation_radius(mesh))?;
-            let along = |a: usize, points: usize| points as f64 * mesh.spacing()[a];
-            kernel.check_period(
-                std::array::from_fn(|a| along(a, mesh.points()[a])),
-                std::array::from_fn(|a| along(a, wide[slot::<D>(a)])),
-            )?;
-            Ok(Octant::of_truncated(&kernel, wide.map(|n| n / 2 + 1), half, spacing))
+    fn check_mean(&self, source: &[T]) -> Result<(), FreeSpaceError> {
+        let Some((weights, false)) = &self.closed else { return Ok(()) };
+        let (mut sum, mut all, mut largest) = (0.0, 0.0, 0.0_f64);
+        for (point, value) in source.iter().enumerate() {
+            let i = self.mesh.indices(point);
+            let weight: f64 = (0..D).map(|a| weights[a][i[a]]).product();
+            sum += weight * value.widened();
+            all += weight.abs();
+            largest = largest.max(value.widened().abs());
         }
-        (Kernel::Gaussian { order, smoothing }, _) => {
-            let smoothing = smoothing.map_or_else(|| default_smoothing(order), Ok)?;
-            let kernel = Gaussian::<D>::new(order, smoothing * coarsest)?;
-            Ok(Octant::of_radial(&kernel, half, spacing))
-        }
-        _ => {
-            let kernel = Spectral::<D>::new(coarsest / std::f64::consts::PI)?;
-            Ok(Octant::of_radial(&kernel, half, spacing))
-        }
+        let mean = if largest > 0.0 && all > 0.0 { sum / all / largest } else { 0.0 };
+        if mean.abs() > NO_MEAN.max(T::epsilon()) { Err(FreeSpaceError::Mean { mean }) } else { Ok(()) }
     }
 }
 
-fn check_values<T: Real>(what: &'static str, values: &[T], expected: usize) -> Result<(), FreeSpaceError> {
+pub(crate) fn check_values<T: Real>(
+    what: &'static str,
+    values: &[T],
+    expected: usize,
+) -> Result<(), FreeSpaceError> {
     if values.len() != expected {
         return Err(FreeSpaceError::Length { what, got: values.len(), expected });
     }

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::cosine;
-use crate::kernel::{Radial, Truncated};
+use crate::error::FreeSpaceError;
+use crate::kernel::{Radial, Screened, Truncated};
 
 /// Values on the octant of offsets `0..shape` in each direction, the last one running fastest.
 pub(super) struct Octant {
@@ -39,6 +40,63 @@ impl Octant {
         cosine::transform(&mut octant.values, half, [true; 3]);
         octant.values.par_iter_mut().for_each(|v| *v /= all);
         octant
+    }
+}
+
+/// A problem of which some directions are periods.
+pub(super) struct Mixed {
+    /// Directions that are open.
+    pub(super) open: [bool; 3],
+    /// Radius at which kernels are cut off.
+    pub(super) radius: f64,
+    /// Lengths of the transforms in which they are sampled.
+    pub(super) wide: [usize; 3],
+    /// The octant.
+    pub(super) half: [usize; 3],
+    pub(super) spacing: [f64; 3],
+}
+
+impl Octant {
+    /// Ĝ where some directions are periods: for each wave number of those, the screened Green's function of the others, cut
+    /// off, times `filter` of the magnitude of the whole wave number.
+    pub(super) fn of_mixed(
+        mixed: &Mixed,
+        filter: &(dyn Fn(f64) -> f64 + Sync),
+    ) -> Result<Self, FreeSpaceError> {
+        let Mixed { open, radius, wide, half, spacing } = *mixed;
+        let shape = wide.map(|n| n / 2 + 1);
+        // Squares of the wave numbers of each direction.
+        let squares: [Vec<f64>; 3] = std::array::from_fn(|a| {
+            let unit = std::f64::consts::TAU / (wide[a] as f64 * spacing[a]);
+            (0..shape[a]).map(|i| if wide[a] > 1 { (i as f64 * unit).powi(2) } else { 0.0 }).collect()
+        });
+        let count = open.iter().filter(|o| **o).count();
+        let of = |a: usize, i: usize, wanted: bool| if open[a] == wanted { squares[a][i] } else { 0.0 };
+        let mut values = vec![0.0; shape.iter().product()];
+        values.par_chunks_mut(shape[2]).enumerate().try_for_each(|(line, out)| {
+            let (i, j) = (line / shape[1], line % shape[1]);
+            let mut kernel = None;
+            for (k, value) in out.iter_mut().enumerate() {
+                let sum = |wanted| of(0, i, wanted) + of(1, j, wanted) + of(2, k, wanted);
+                let (across, along): (f64, f64) = (sum(false), sum(true));
+                let kept = match kernel {
+                    Some((square, kept)) if square == across => kept,
+                    _ => Screened::new(count, radius, across.sqrt()),
+                };
+                kernel = Some((across, kept));
+                *value = filter((across + along).sqrt()) * kept.transform(along.sqrt())?;
+            }
+            Ok(())
+        })?;
+        if count == 0 {
+            return Ok(Self { values });
+        }
+        cosine::transform(&mut values, shape, open);
+        let mut octant = Self { values: crop(&values, shape, half) };
+        cosine::transform(&mut octant.values, half, open);
+        let all: f64 = (0..3).filter(|a| open[*a]).map(|a| wide[a] as f64).product();
+        octant.values.par_iter_mut().for_each(|v| *v /= all);
+        Ok(octant)
     }
 }
 

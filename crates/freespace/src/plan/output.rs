@@ -1,5 +1,7 @@
 //! What a solve is asked for.
 
+use rustfft::num_complex::Complex;
+
 use crate::error::FreeSpaceError;
 
 /// A field that a plan computes; `source` counts the sources that were given, `axis` the directions, 0 for x.
@@ -12,6 +14,18 @@ pub enum Output {
     },
     /// The derivative of phi in a direction.
     Gradient {
+        /// Which source.
+        source: usize,
+        /// Which direction.
+        axis: usize,
+    },
+    /// An estimate of the error of phi, by which it is to be raised: what the next order would add. Gaussian kernels only.
+    PotentialError {
+        /// Which source.
+        source: usize,
+    },
+    /// The same for a derivative of phi.
+    GradientError {
         /// Which source.
         source: usize,
         /// Which direction.
@@ -40,13 +54,32 @@ pub(super) struct Term {
     pub(super) sign: f64,
 }
 
+/// An output as the engine computes it.
+#[derive(Debug)]
+pub(super) struct Wanted<T> {
+    pub(super) terms: Vec<Term>,
+    /// The estimate of the error instead of the kernel.
+    pub(super) estimate: bool,
+    /// Factors of each direction that move the result.
+    pub(super) phases: Option<[Vec<Complex<T>>; 3]>,
+}
+
 impl Output {
+    /// Whether it is an estimate.
+    pub(super) fn is_estimate(self) -> bool {
+        matches!(self, Self::PotentialError { .. } | Self::GradientError { .. })
+    }
+
     /// What the field is the sum of, before it is convolved.
     pub(super) fn terms<const D: usize>(self, sources: usize) -> Result<Vec<Term>, FreeSpaceError> {
         let along = |source, axis, sign| Term { source, axis: Some(axis), sign };
         let terms = match self {
-            Self::Potential { source } => vec![Term { source, axis: None, sign: 1.0 }],
-            Self::Gradient { source, axis } => vec![along(source, axis, 1.0)],
+            Self::Potential { source } | Self::PotentialError { source } => {
+                vec![Term { source, axis: None, sign: 1.0 }]
+            }
+            Self::Gradient { source, axis } | Self::GradientError { source, axis } => {
+                vec![along(source, axis, 1.0)]
+            }
             Self::Curl { axis } => curl::<D>(axis)?,
             Self::Velocity { axis } => {
                 let mut terms = curl::<D>(axis)?;

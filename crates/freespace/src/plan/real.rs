@@ -11,6 +11,9 @@ pub trait Real: FftNum + Default {
     fn rounded(value: f64) -> Self;
     /// The same number.
     fn widened(self) -> f64;
+    /// Mean of a source that is the round-off of its sum.
+    #[doc(hidden)]
+    fn epsilon() -> f64;
     /// Complex transforms of a length, forward and back. Here rather than where they are used, so that the many
     /// transforms of the library are compiled with this crate and not with every crate that has a plan.
     #[doc(hidden)]
@@ -38,6 +41,9 @@ impl Real for f64 {
     fn rounded(value: f64) -> Self {
         value
     }
+    fn epsilon() -> f64 {
+        1e-13
+    }
     fn widened(self) -> f64 {
         self
     }
@@ -47,6 +53,9 @@ impl Real for f64 {
 impl Real for f32 {
     fn rounded(value: f64) -> Self {
         value as Self
+    }
+    fn epsilon() -> f64 {
+        1e-5
     }
     fn widened(self) -> f64 {
         f64::from(self)

@@ -3,7 +3,7 @@
 use rustfft::num_complex::Complex;
 
 use super::engine::Engine;
-use super::output::Term;
+use super::output::Wanted;
 use super::real::Real;
 
 /// Columns that are gathered at once: four cache lines of complex numbers from each row.
@@ -51,15 +51,14 @@ impl<T: Real> Tile<T> {
         engine: &Engine<T>,
         first: usize,
         parts: &mut [&mut [Complex<T>]],
-        terms: &[Vec<Term>],
+        wanted: &[Wanted<T>],
     ) {
         let [_, y, z] = &engine.axes;
         let width = parts.first().map_or(0, |p| p.len()) / y.n * y.len;
         for source in 0..self.shape.sources {
             for (row, part) in self.rows[source].chunks_exact_mut(width).zip(&parts[source * z.n..][..z.n]) {
                 for (line, values) in row.chunks_exact_mut(y.len).zip(part.chunks_exact(y.n)) {
-                    line[..y.n].copy_from_slice(values);
-                    line[y.n..].fill(Complex::default());
+                    y.load(values, line);
                 }
                 if y.len > 1 {
                     y.forward.process_with_scratch(row, &mut self.scratch);
@@ -67,7 +66,7 @@ impl<T: Real> Tile<T> {
             }
         }
         for start in (0..width).step_by(COLUMNS) {
-            self.columns(engine, first, width, start, terms);
+            self.columns(engine, first, width, start, wanted);
         }
         for output in 0..self.shape.outputs {
             for (row, part) in
@@ -77,49 +76,58 @@ impl<T: Real> Tile<T> {
                     y.inverse.process_with_scratch(row, &mut self.scratch);
                 }
                 for (line, values) in row.chunks_exact(y.len).zip(part.chunks_exact_mut(y.n)) {
-                    values.copy_from_slice(&line[..y.n]);
+                    y.store(line, values);
                 }
             }
         }
     }
 
     /// Transforms, multiplies and transforms back the columns from `start` on.
-    fn columns(&mut self, engine: &Engine<T>, first: usize, width: usize, start: usize, terms: &[Vec<Term>]) {
+    fn columns(
+        &mut self,
+        engine: &Engine<T>,
+        first: usize,
+        width: usize,
+        start: usize,
+        wanted: &[Wanted<T>],
+    ) {
         let [_, y, z] = &engine.axes;
         let count = COLUMNS.min(width - start);
         for (rows, columns) in self.rows.iter().zip(&mut self.columns) {
             let columns = &mut columns[..count * z.len];
-            columns.chunks_exact_mut(z.len).for_each(|c| c[z.n..].fill(Complex::default()));
-            for (j, row) in rows.chunks_exact(width).take(z.n).enumerate() {
+            for (j, row) in rows.chunks_exact(width).take(z.n.min(z.len)).enumerate() {
                 for (c, value) in row[start..start + count].iter().enumerate() {
                     columns[c * z.len + j] = *value;
                 }
             }
+            columns.chunks_exact_mut(z.len).for_each(|c| z.continue_in_place(c));
             z.forward.process_with_scratch(columns, &mut self.scratch);
         }
-        for (terms, rows) in terms.iter().zip(&mut self.rows) {
+        for (wanted, rows) in wanted.iter().zip(&mut self.rows) {
             for c in 0..count {
                 let place = start + c;
                 let waves = [first + place / y.len, place % y.len];
                 let line = c * z.len..(c + 1) * z.len;
-                combine(engine, waves, terms, &self.columns, line.clone(), &mut self.product[line]);
+                combine(engine, waves, wanted, &self.columns, line.clone(), &mut self.product[line]);
             }
             let product = &mut self.product[..count * z.len];
             z.inverse.process_with_scratch(product, &mut self.scratch);
             for (j, row) in rows.chunks_exact_mut(width).take(z.n).enumerate() {
+                // Beyond a period the values begin again.
+                let place = if j < z.len { j } else { j - z.len };
                 for (c, value) in row[start..start + count].iter_mut().enumerate() {
-                    *value = product[c * z.len + j];
+                    *value = product[c * z.len + place];
                 }
             }
         }
     }
 }
 
-/// A line of an output in Fourier space: Ĝ times its terms.
+/// A line of an output in Fourier space: Ĝ, or the estimate of its error, times its terms.
 fn combine<T: Real>(
     engine: &Engine<T>,
     waves: [usize; 2],
-    terms: &[Term],
+    wanted: &Wanted<T>,
     sources: &[Vec<Complex<T>>],
     line: std::ops::Range<usize>,
     out: &mut [Complex<T>],
@@ -127,7 +135,7 @@ fn combine<T: Real>(
     let [x, y, z] = &engine.axes;
     let half = z.half();
     let kernel = &engine.kernel[(waves[0] * y.half() + y.fold(waves[1])) * half..][..half];
-    for (index, term) in terms.iter().enumerate() {
+    for (index, term) in wanted.terms.iter().enumerate() {
         let source = &sources[term.source][line.clone()];
         let sign = T::rounded(term.sign);
         let times_i = |s: &Complex<T>, k: T| Complex::new(-k * s.im, k * s.re);
@@ -146,9 +154,17 @@ fn combine<T: Real>(
             }
         }
     }
-    let (low, high) = out.split_at_mut(half);
-    low.iter_mut().zip(kernel).for_each(|(o, g)| *o = *o * *g);
-    // The other wave numbers have the magnitudes of those before, from the far end.
-    let mirrored = kernel[1..].iter().rev().skip(1 - z.len % 2);
-    high.iter_mut().zip(mirrored).for_each(|(o, g)| *o = *o * *g);
+    if let (true, Some(estimate)) = (wanted.estimate, &engine.estimate) {
+        estimate.apply([waves[0], y.fold(waves[1])], z.half(), out);
+    } else {
+        let (low, high) = out.split_at_mut(half);
+        low.iter_mut().zip(kernel).for_each(|(o, g)| *o = *o * *g);
+        // The other wave numbers have the magnitudes of those before, from the far end.
+        let mirrored = kernel[1..].iter().rev().skip(1 - z.len % 2);
+        high.iter_mut().zip(mirrored).for_each(|(o, g)| *o = *o * *g);
+    }
+    if let Some([of_x, of_y, of_z]) = &wanted.phases {
+        let here = of_x[waves[0]] * of_y[waves[1]];
+        out.iter_mut().zip(of_z).for_each(|(o, p)| *o = *o * (here * p));
+    }
 }

@@ -1,0 +1,262 @@
+//! Refinement: patches with finer meshes, each of which adds the wave numbers that its parent does not hold.
+//!
+//! Hejlesen and Walther (2016), section 2.6. The base mesh samples all of the source; nothing is cut out of it under a patch.
+//! A patch samples the source on itself and on a band as wide as its kernel reaches, convolves it with the band-pass
+//! kernel, and adds what its parent found. The result counts inside of the patch alone, so that neighbours need not know of
+//! each other.
+
+mod indicator;
+mod interpolate;
+mod patch;
+
+pub use indicator::suggest;
+pub use interpolate::{Superposition, m4_prime, m6_star};
+pub use patch::Patch;
+
+use crate::error::FreeSpaceError;
+use crate::kernel::{BandPass, Gaussian, default_smoothing};
+use crate::mesh::Mesh;
+use crate::plan::{Output, Plan, Workspace};
+use interpolate::interpolate;
+
+/// How meshes are refined.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RefineParams {
+    /// Order m of the kernels.
+    pub order: usize,
+    /// Smoothing radius over the spacing of each mesh; `None` takes [`default_smoothing`].
+    pub smoothing: Option<f64>,
+    /// Kernels of patches are cut off where they are below this part of their value at the origin.
+    pub tolerance: f64,
+    /// How a patch takes over what its parent found.
+    pub superposition: Superposition,
+}
+
+impl Default for RefineParams {
+    /// Order 10, reach to round-off, polynomials through ten points.
+    fn default() -> Self {
+        Self { order: 10, smoothing: None, tolerance: 1e-15, superposition: Superposition::Lagrange(10) }
+    }
+}
+
+/// A base mesh and patches, planned once and used for many sources. Mesh 0 is the base, mesh j + 1 the patch j.
+#[derive(Debug)]
+pub struct RefinedPlan<const D: usize> {
+    params: RefineParams,
+    levels: Vec<Level<D>>,
+}
+
+#[derive(Debug)]
+struct Level<const D: usize> {
+    plan: Plan<D>,
+    parent: Option<usize>,
+    /// The points whose values count.
+    mesh: Mesh<D>,
+    /// The same with the points that patches within it interpolate from.
+    evaluated: Mesh<D>,
+    /// Points of the evaluated mesh before the first one that counts.
+    margin: usize,
+    /// Points of the sampled mesh before the first one that is evaluated.
+    band: usize,
+}
+
+/// For each mesh, for each source or output, an array of values.
+pub type Fields = Vec<Vec<Vec<f64>>>;
+
+impl<const D: usize> RefinedPlan<D> {
+    /// Plans a base mesh with patches; parents come before their patches.
+    ///
+    /// # Errors
+    /// A patch outside of its parent or without room to interpolate, a ratio below 2, and the errors of kernels and plans.
+    pub fn new(base: &Mesh<D>, patches: &[Patch<D>], params: RefineParams) -> Result<Self, FreeSpaceError> {
+        FreeSpaceError::unless_positive("tolerance of the kernels", params.tolerance)?;
+        if let Superposition::Lagrange(points) = params.superposition
+            && !(points.is_multiple_of(2) && (2..=16).contains(&points))
+        {
+            return Err(FreeSpaceError::Invalid {
+                what: "number of points to interpolate from",
+                value: points as f64,
+                expected: "even, from 2 to 16",
+            });
+        }
+        let smoothing = params.smoothing.map_or_else(|| default_smoothing(params.order), Ok)?;
+        let coarsest = base.spacing().into_iter().fold(0.0, f64::max);
+        let kernel = Gaussian::<D>::new(params.order, smoothing * coarsest)?;
+        let plan = Plan::with_radial(base, &kernel)?;
+        let mut levels =
+            vec![Level { plan, parent: None, mesh: *base, evaluated: *base, margin: 0, band: 0 }];
+        for (index, patch) in patches.iter().enumerate() {
+            let parent = patch.parent.map_or(0, |p| p + 1);
+            if parent > index {
+                return Err(FreeSpaceError::Patch {
+                    patch: index,
+                    what: format!("its parent, patch {}, does not come before it", parent - 1),
+                });
+            }
+            let has_patches = patches.iter().any(|p| p.parent == Some(index));
+            let level = Level::of_patch(index, patch, &levels[parent], has_patches, smoothing, params)?;
+            levels.push(Level { parent: Some(parent), ..level });
+        }
+        Ok(Self { params, levels })
+    }
+
+    /// Number of meshes, the base included.
+    pub fn len(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Whether there are no meshes; there is always a base.
+    pub fn is_empty(&self) -> bool {
+        self.levels.is_empty()
+    }
+
+    /// The mesh that results of mesh `index` are given on.
+    pub fn mesh(&self, index: usize) -> &Mesh<D> {
+        &self.levels[index].mesh
+    }
+
+    /// The mesh that the source of mesh `index` is to be sampled on, its band included.
+    pub fn source_mesh(&self, index: usize) -> &Mesh<D> {
+        self.levels[index].plan.mesh()
+    }
+
+    /// The patches that lie in mesh `index`, as indices of meshes.
+    pub fn patches_of(&self, index: usize) -> impl Iterator<Item = usize> {
+        (0..self.levels.len()).filter(move |&i| self.levels[i].parent == Some(index))
+    }
+
+    /// The fields `wanted` on every mesh; `sources` has for each mesh the sources on its [`Self::source_mesh`].
+    ///
+    /// # Errors
+    /// As for [`Plan::solve`], or sources for another number of meshes.
+    pub fn solve(&self, sources: &[Vec<Vec<f64>>], wanted: &[Output]) -> Result<Fields, FreeSpaceError> {
+        if sources.len() != self.levels.len() {
+            return Err(FreeSpaceError::Length {
+                what: "list of sources",
+                got: sources.len(),
+                expected: self.levels.len(),
+            });
+        }
+        let mut totals: Fields = Vec::with_capacity(self.levels.len());
+        for (index, level) in self.levels.iter().enumerate() {
+            let own = self.solve_on(index, &sources[index], wanted, [0.0; D])?;
+            let mut total: Vec<Vec<f64>> = own.iter().map(|field| level.evaluated_part(field)).collect();
+            if let Some(parent) = level.parent {
+                match self.params.superposition {
+                    Superposition::Shift => self.add_shifted(index, sources, wanted, &mut total)?,
+                    how => {
+                        let parents = &self.levels[parent].evaluated;
+                        for (field, coarse) in total.iter_mut().zip(&totals[parent]) {
+                            let fine = level.taken_over(parents, coarse, how);
+                            field.iter_mut().zip(fine).for_each(|(f, c)| *f += c);
+                        }
+                    }
+                }
+            }
+            totals.push(total);
+        }
+        for (level, total) in self.levels.iter().zip(&mut totals) {
+            if level.margin > 0 {
+                total
+                    .iter_mut()
+                    .for_each(|field| *field = part(field, &level.evaluated, level.margin, &level.mesh));
+            }
+        }
+        Ok(totals)
+    }
+
+    fn solve_on(
+        &self,
+        index: usize,
+        sources: &[Vec<f64>],
+        wanted: &[Output],
+        shift: [f64; D],
+    ) -> Result<Vec<Vec<f64>>, FreeSpaceError> {
+        let sources: Vec<&[f64]> = sources.iter().map(Vec::as_slice).collect();
+        let mut outputs = Vec::new();
+        let plan = &self.levels[index].plan;
+        plan.solve_shifted(&sources, wanted, shift, &mut Workspace::default(), &mut outputs)?;
+        Ok(outputs)
+    }
+
+    /// Adds what all meshes above `index` found, evaluated at its points.
+    fn add_shifted(
+        &self,
+        index: usize,
+        sources: &[Vec<Vec<f64>>],
+        wanted: &[Output],
+        total: &mut [Vec<f64>],
+    ) -> Result<(), FreeSpaceError> {
+        let fine = &self.levels[index].evaluated;
+        let mut above = self.levels[index].parent;
+        while let Some(coarse) = above {
+            let mesh = self.source_mesh(coarse);
+            let places = fine.places_in(mesh);
+            let ratio: [usize; D] =
+                std::array::from_fn(|a| (mesh.spacing()[a] / fine.spacing()[a]).round() as usize);
+            for phase in 0..ratio.iter().product::<usize>() {
+                let mut rest = phase;
+                let first = ratio.map(|r| {
+                    let i = rest % r;
+                    rest /= r;
+                    i
+                });
+                // The fine points with these remainders are all shifted alike.
+                let at: [f64; D] = std::array::from_fn(|a| places(a, first[a]));
+                let shift = at.map(|p| p - p.round());
+                let fields = self.solve_on(coarse, &sources[coarse], wanted, shift)?;
+                for (field, total) in fields.iter().zip(total.iter_mut()) {
+                    for (point, value) in total.iter_mut().enumerate() {
+                        let i = fine.indices(point);
+                        if (0..D).all(|a| i[a] % ratio[a] == first[a]) {
+                            let near: [usize; D] =
+                                std::array::from_fn(|a| (places(a, i[a]) - shift[a]).round() as usize);
+                            *value += field[mesh.index(near)];
+                        }
+                    }
+                }
+            }
+            above = self.levels[coarse].parent;
+        }
+        Ok(())
+    }
+}
+
+impl<const D: usize> Level<D> {
+    fn of_patch(
+        index: usize,
+        patch: &Patch<D>,
+        parent: &Self,
+        has_patches: bool,
+        smoothing: f64,
+        params: RefineParams,
+    ) -> Result<Self, FreeSpaceError> {
+        let margin = if has_patches { params.superposition.half_width() } else { 0 };
+        let mesh = patch.mesh(index, &parent.mesh)?;
+        let evaluated = mesh.grown(margin)?;
+        patch::check_room(index, &evaluated, &parent.evaluated, params.superposition)?;
+        let coarsest = mesh.spacing().into_iter().fold(0.0, f64::max);
+        let kernel = BandPass::<D>::new(params.order, smoothing * coarsest, patch.ratio as f64)?;
+        let finest = mesh.spacing().into_iter().fold(f64::INFINITY, f64::min);
+        let band = (kernel.reach(params.tolerance) / finest).ceil() as usize;
+        let sampled = evaluated.grown(band)?;
+        let plan = Plan::with_compact(&sampled, &kernel)?;
+        Ok(Self { plan, parent: None, mesh, evaluated, margin, band })
+    }
+
+    /// The evaluated part of a field on the sampled mesh.
+    fn evaluated_part(&self, field: &[f64]) -> Vec<f64> {
+        part(field, self.plan.mesh(), self.band, &self.evaluated)
+    }
+
+    /// A field of the parent at the evaluated points.
+    fn taken_over(&self, parent: &Mesh<D>, field: &[f64], how: Superposition) -> Vec<f64> {
+        let places = self.evaluated.places_in(parent);
+        interpolate(field, parent.points(), self.evaluated.points(), places, how)
+    }
+}
+
+/// The values of `field` on `inner`, which begins `skip` points after `outer` in every direction.
+fn part<const D: usize>(field: &[f64], outer: &Mesh<D>, skip: usize, inner: &Mesh<D>) -> Vec<f64> {
+    (0..inner.len()).map(|point| field[outer.index(inner.indices(point).map(|i| i + skip))]).collect()
+}

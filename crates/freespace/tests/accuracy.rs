@@ -1,0 +1,72 @@
+//! Estimates of the error and choices that rest on them.
+
+use meshless_freespace::{Centring, FreeSpaceError, Kernel, Mesh, Output, Plan, Spectrum, Workspace};
+
+/// A Gaussian source whose potential in three dimensions is erf(r / s sqrt 2) / 4 pi r times its total.
+fn problem(cells: usize) -> (Mesh<3>, Vec<f64>, Vec<f64>) {
+    let mesh = Mesh::of_box([-1.0; 3], [1.0; 3], [cells; 3], Centring::Cell).expect("a mesh");
+    let width = 0.13_f64;
+    let square = |p: [f64; 3]| p.iter().map(|x| x * x).sum::<f64>();
+    let source = mesh.sample(|p| (-square(p) / (2.0 * width * width)).exp());
+    let total = (std::f64::consts::TAU.sqrt() * width).powi(3);
+    let exact = mesh.sample(|p| {
+        let r = square(p).sqrt();
+        total * libm::erf(r / width / 2.0_f64.sqrt()) / (4.0 * std::f64::consts::PI * r)
+    });
+    (mesh, source, exact)
+}
+
+fn norm(values: impl Iterator<Item = f64>) -> f64 {
+    values.map(|v| v * v).sum::<f64>().sqrt()
+}
+
+#[test]
+fn the_next_order_tells_the_error() {
+    let (mesh, source, exact) = problem(40);
+    for (order, margin) in [(2, 0.4), (4, 0.4), (6, 0.4), (8, 0.4)] {
+        let plan: Plan<3> = Plan::new(&mesh, Kernel::gaussian(order)).expect("a plan");
+        let wanted = [Output::Potential { source: 0 }, Output::PotentialError { source: 0 }];
+        let mut out = Vec::new();
+        plan.solve(&[&source], &wanted, &mut Workspace::default(), &mut out).expect("fields");
+        let error = norm(exact.iter().zip(&out[0]).map(|(e, v)| e - v));
+        let unexplained = norm(exact.iter().zip(&out[0]).zip(&out[1]).map(|((e, v), d)| e - v - d));
+        let estimate = norm(out[1].iter().copied());
+        assert!((estimate / error - 1.0).abs() < margin, "order {order}: {estimate:e} for {error:e}");
+        assert!(unexplained < margin * error, "order {order}: {unexplained:e} of {error:e} is left");
+        // The estimate is what the next order adds.
+        if order < 8 {
+            let next: Plan<3> = Plan::new(&mesh, Kernel::gaussian(order + 2)).expect("a plan");
+            let next = next.potential(&source).expect("a potential");
+            let difference = norm(next.iter().zip(&out[0]).zip(&out[1]).map(|((n, v), d)| n - v - d));
+            assert!(difference < 1e-6 * estimate, "order {order}: {difference:e} of {estimate:e}");
+        }
+    }
+    let spectral: Plan<3> = Plan::new(&mesh, Kernel::Spectral).expect("a plan");
+    let wanted = [Output::PotentialError { source: 0 }];
+    let refused = spectral.solve(&[&source], &wanted, &mut Workspace::default(), &mut Vec::new());
+    assert!(matches!(refused, Err(FreeSpaceError::Kernel { .. })));
+}
+
+#[test]
+fn the_spectrum_predicts_errors_and_finds_a_good_kernel() {
+    let (mesh, source, exact) = problem(32);
+    let spectrum = Spectrum::new(&mesh, &source).expect("a spectrum");
+    let measured = |kernel: Kernel| {
+        let plan: Plan<3> = Plan::new(&mesh, kernel).expect("a plan");
+        let phi = plan.potential(&source).expect("a potential");
+        norm(exact.iter().zip(&phi).map(|(e, v)| e - v)) / norm(exact.iter().copied())
+    };
+    for order in [2, 4, 8, 12] {
+        for smoothing in [1.25, 2.0] {
+            let kernel = Kernel::Gaussian { order, smoothing: Some(smoothing) };
+            let ratio = spectrum.error(kernel) / measured(kernel);
+            // The prediction knows periods only, and the worst direction.
+            assert!((0.2..8.0).contains(&ratio), "order {order}, {smoothing}: {ratio}");
+        }
+    }
+    let best = spectrum.best();
+    let usual = measured(Kernel::Gaussian { order: 10, smoothing: Some(2.0) });
+    assert!(measured(best.kernel) < 0.1 * usual, "{best:?}: {:e} for {usual:e}", measured(best.kernel));
+    assert!(spectrum.best_for(1e-5).is_ok());
+    assert!(matches!(spectrum.best_for(1e-16), Err(FreeSpaceError::Tolerance { .. })));
+}
