@@ -21,9 +21,10 @@ const fn example(name: &'static str, spacing: &'static str, l2: f64) -> Example 
 
 /// Bounds are about one and a half times what was measured: the error that a method of the order that `docs/` promises
 /// has at this spacing.
-const EXAMPLES: [Example; 15] = [
+const EXAMPLES: [Example; 16] = [
     example("ball", "0.16", 9e-3),
     example("chip", "0.1", 1.6e-2),
+    example("crack", "0.08", 8e-3),
     example("curved", "0.08", 2e-2),
     example("electrode", "0.08", 1.4e-2),
     example("inclusion", "0.08", 1.6e-2),
@@ -113,6 +114,9 @@ const FEATURES: &[&str] = &[
     "[[holes]]",
     "[[regions]]",
     "[[interfaces]]",
+    "[[slits]]",
+    "polyline = [",
+    "enrichment = ",
     "[[boundaries]]",
     "[[probes]]",
     "[method]",

@@ -3,7 +3,9 @@
 use meshless::plan::{Plan, Stage};
 use meshless::scene::{MethodName, Scene};
 use meshless_tests::order::observed;
-use meshless_tests::particle_difference::{Regularity, ball, circle, corner_45, corner_90, cylinder};
+use meshless_tests::particle_difference::{
+    Regularity, SlitSetup, ball, circle, corner_45, corner_90, crack, cylinder, slit,
+};
 use meshless_tests::small::Small;
 use meshless_tests::solve::solve_with;
 
@@ -134,4 +136,33 @@ fn an_interface_at_which_nothing_jumps_adds_no_stage() {
     assert!(!none.contains(&Stage::ConstrainedStencils));
     assert_eq!(same.into_iter().filter(|s| *s != Stage::Regions).collect::<Vec<_>>(), none);
     assert!(other.contains(&Stage::ConstrainedStencils));
+}
+
+/// The largest error of the paper's slit without visibility is 7.4e-2 to 5.4e-2, of order 0.23.
+#[test]
+fn slits_are_of_second_order_in_l2_with_the_singular_functions_of_their_tips() {
+    for regularity in [Regularity::Grid, Regularity::Irregular(1)] {
+        let setup = SlitSetup { dirichlet: false, enriched: true, graded: false };
+        let jump = [20, 40, 80].map(|n| slit(n, regularity, setup));
+        let given = [20, 40, 80].map(|n| slit(n, regularity, SlitSetup { dirichlet: true, ..setup }));
+        let crack = [20, 40, 80].map(|n| crack(n, regularity, true));
+        for scenes in [jump, given, crack] {
+            let rungs = scenes.map(|text| {
+                let solution = solve_with(&text, MethodName::Auto).expect("the scene can be solved");
+                assert_eq!(solution.report.method, "particle-difference");
+                (solution.report.spacing, solution.report.errors.expect("a closed form").l2)
+            });
+            assert!(observed(&rungs) >= 1.8 && rungs[2].1 < 1e-3, "{regularity:?}: {rungs:?}");
+        }
+    }
+}
+
+#[test]
+fn methods_that_do_not_know_slits_refuse_them_at_their_place() {
+    let text = crack(20, Regularity::Grid, true) + "[method]\nname = \"gfdm-hybrid\"\n";
+    let error = Plan::new(&Scene::parse(&text, "crack.toml").expect("a scene")).expect_err("no slits there");
+    assert!(
+        error.to_string().contains("gfdm-hybrid") && error.to_string().contains("crack.toml:"),
+        "{error}"
+    );
 }

@@ -41,6 +41,7 @@ mod quasi_random;
 mod random;
 mod region;
 mod shape;
+mod slit;
 mod spatial_hash;
 mod vector;
 
@@ -56,3 +57,4 @@ pub use newton::SURFACE_TOLERANCE;
 pub use projection::{Projection, ProjectionError};
 pub use region::{Component, RegionGraph, RegionMap, RegionShape, TIE};
 pub use shape::{Ball, Cylinder, HalfSpace, Polygon, Shape};
+pub use slit::{Sight, Slit, SlitFoot, SlitPoint};

@@ -33,7 +33,7 @@
 //! let problem = Problem {
 //!     cloud: &cloud, domain: &domain, supports: Supports { lists: &lists, radius: &radius }, regions: &regions,
 //!     labels: &labels, materials: &materials, eta: &eta, source: None, conditions: &conditions,
-//!     boundary: &boundary, jumps: &[] };
+//!     boundary: &boundary, jumps: &[], slits: &[] };
 //! let discretization = Gfdm { params: GfdmParams::conservative() }.discretize(&problem)?;
 //! let solution = solve(&problem, &discretization, &Default::default())?;
 //! // Nearly all of the drop is in the first material.
@@ -57,6 +57,7 @@ mod problem;
 mod row_report;
 mod sample;
 pub mod sharp;
+mod slit;
 mod support_values;
 mod system;
 
@@ -68,4 +69,5 @@ pub use method::{Counts, Discretization, Method, RowKind, SplitRows};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};
+pub use slit::{SlitCondition, SlitInterface};
 pub use system::{PreparedSystem, SystemParams, SystemSolution, solve};

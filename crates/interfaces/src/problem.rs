@@ -6,7 +6,7 @@
 use meshless_geometry::{Cloud, Domain, FaceId, RegionMap};
 use meshless_neighbors::NeighborLists;
 
-use crate::{Field, MethodError};
+use crate::{Field, MethodError, SlitInterface};
 
 /// The data of one region.
 #[derive(Debug, Clone)]
@@ -97,6 +97,8 @@ pub struct Problem<'a, const D: usize> {
     pub boundary: &'a dyn BoundaryData<D>,
     /// Prescribed jumps.
     pub jumps: &'a [InterfaceJump<D>],
+    /// Interfaces that end inside the domain.
+    pub slits: &'a [SlitInterface<D>],
 }
 
 impl<const D: usize> std::fmt::Debug for Problem<'_, D> {

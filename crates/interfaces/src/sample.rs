@@ -94,6 +94,10 @@ impl<'a, const D: usize> Sampler<'a, D> {
         scratch
             .own
             .extend(scratch.found.iter().copied().filter(|&j| self.problem.labels[j as usize] == region));
+        if !self.problem.slits.is_empty() {
+            let points = self.problem.cloud.points();
+            scratch.own.retain(|&j| !self.problem.is_hidden(x, &points[j as usize]));
+        }
     }
 
     fn fit(

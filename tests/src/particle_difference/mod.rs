@@ -6,11 +6,13 @@
 mod ball;
 mod circle;
 mod cylinder;
+mod slit;
 mod wedges;
 
 pub use ball::ball;
 pub use circle::circle;
 pub use cylinder::cylinder;
+pub use slit::{SlitSetup, crack, slit};
 pub use wedges::{corner_45, corner_90};
 
 /// Nodes along an edge of the square in the paper: 20, 40 and 80, which makes 400, 1600 and 6400; and 160.

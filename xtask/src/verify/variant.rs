@@ -15,6 +15,8 @@ pub(crate) struct Variant {
     pub(crate) wedge: Option<&'static str>,
     /// Values beyond a stiff side count less.
     pub(crate) flux_weights: Option<bool>,
+    /// Nodes do not see through slits.
+    pub(crate) visibility: Option<bool>,
 }
 
 impl Variant {
@@ -30,6 +32,7 @@ impl Variant {
             support: Some(meshless_tests::kraus::SUPPORT),
             wedge: None,
             flux_weights: None,
+            visibility: None,
         }
     }
 
@@ -68,6 +71,7 @@ impl Variant {
         push("support", self.support.map(|s| format!("{s:?}")));
         push("wedge", self.wedge.map(|w| format!("\"{w}\"")));
         push("flux_weights", self.flux_weights.map(|b| b.to_string()));
+        push("visibility", self.visibility.map(|b| b.to_string()));
         table
     }
 
@@ -85,6 +89,7 @@ impl Variant {
         push(self.solver.map(|s| format!("solver={s}")));
         push(self.wedge.map(|w| format!("wedge={w}")));
         push(self.flux_weights.map(|b| format!("flux_weights={b}")));
+        push(self.visibility.map(|b| format!("visibility={b}")));
         params
     }
 

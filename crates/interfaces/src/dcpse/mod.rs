@@ -34,6 +34,7 @@ pub struct ImmersedInterface {
 impl<const D: usize> Method<D> for ImmersedInterface {
     fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
         problem.check()?;
+        problem.without_slits("immersed-interface")?;
         let start = Instant::now();
         let known = problem.dirichlet();
         let mut kinds = kinds(problem, &known);

@@ -33,6 +33,7 @@ pub struct Gfdm {
 impl<const D: usize> Method<D> for Gfdm {
     fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
         problem.check()?;
+        problem.without_slits("gfdm")?;
         self.check(problem)?;
         Parts::build(problem, &self.params)?.assemble(problem)
     }

@@ -11,6 +11,7 @@ mod frame;
 mod leg;
 mod params;
 mod rows;
+mod slit;
 mod wedge;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,7 +60,7 @@ impl<const D: usize> Method<D> for ParticleDifference {
                     Ok(stencils.map(|s| {
                         let differences =
                             s.neighbors.iter().zip(&s.coefficients).map(|(&j, c)| c * (u[j as usize] - u[i]));
-                        differences.sum::<f64>() - s.shift
+                        differences.sum::<f64>() + s.constant * u[i] - s.shift
                     }))
                 },
             )
@@ -75,7 +76,9 @@ fn build<const D: usize>(
 ) -> Result<(SupportValues, Vec<Row>), MethodError> {
     let problem = maker.problem;
     let failed: Vec<AtomicBool> = (0..known.len()).map(|_| AtomicBool::new(false)).collect();
-    let is_plain = |i: usize| known[i].is_none() && !problem.cloud.is_boundary(i) && !feet.is_near(i);
+    let is_plain = |i: usize| {
+        known[i].is_none() && !problem.cloud.is_boundary(i) && !feet.is_near(i) && !maker.may_meet_slit(i)
+    };
     let plain = SupportValues::compute(
         problem.supports.lists,
         || maker.scratch().plain,

@@ -27,17 +27,30 @@ pub struct ParticleDifferenceParams {
     pub wedge: Wedge,
     /// Values beyond the stiffer side count less in a fit, by the ratio of the diffusivities: in units of the flux.
     pub flux_weights: bool,
+    /// A node behind a slit is no neighbour of one before it. Without, as in the paper, whoever is beyond the line of the
+    /// slit at the foot of a node is across it, also past the tip.
+    pub visibility: bool,
+    /// Fits near the tips of slits have the singular functions there, as far as the slits ask for it.
+    pub enrichment: bool,
 }
 
 impl Default for ParticleDifferenceParams {
     fn default() -> Self {
-        Self { degree: 2, weight: Weight::Quartic, wedge: Wedge::Quadratic, flux_weights: true }
+        Self {
+            degree: 2,
+            weight: Weight::Quartic,
+            wedge: Wedge::Quadratic,
+            flux_weights: true,
+            visibility: true,
+            enrichment: true,
+        }
     }
 }
 
 impl ParticleDifferenceParams {
     /// The method of the paper.
     pub fn paper() -> Self {
-        Self { wedge: Wedge::Plane, flux_weights: false, ..Self::default() }
+        let wedge = Wedge::Plane;
+        Self { wedge, flux_weights: false, visibility: false, enrichment: false, ..Self::default() }
     }
 }

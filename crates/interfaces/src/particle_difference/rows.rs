@@ -9,6 +9,7 @@ use crate::particle_difference::ParticleDifferenceParams;
 use crate::particle_difference::feet::Feet;
 use crate::particle_difference::fit::{ConstrainedFit, ConstrainedScratch};
 use crate::particle_difference::leg::GRADIENT_STEP;
+use crate::particle_difference::slit::{SlitFit, SlitScratch};
 use crate::{MethodError, Problem};
 
 /// A row `sum_j c_j (u_j - u_i) + r u_i = b`.
@@ -28,8 +29,10 @@ pub(super) struct Row {
 pub(super) struct Stencil {
     pub(super) neighbors: Vec<u32>,
     pub(super) coefficients: Vec<f64>,
-    /// `sum_j c_j shift_j`: to be taken from the operator applied to the nodal values.
+    /// To be taken from the operator applied to the nodal values: `sum_j c_j shift_j`, less what conditions on slits give.
     pub(super) shift: f64,
+    /// The operator applied to nodal values of 1; not zero where conditions on slits say something about u itself.
+    pub(super) constant: f64,
     pub(super) constrained: bool,
     pub(super) enlarged: bool,
 }
@@ -40,12 +43,14 @@ pub(super) struct StencilMaker<'a, const D: usize> {
     feet: &'a Feet<D>,
     plain: NodeFit<D>,
     constrained: ConstrainedFit<'a, D>,
+    slit: SlitFit<'a, D>,
 }
 
 /// Memory of one thread.
 pub(super) struct MakerScratch<'a, const D: usize> {
     pub(super) plain: NodeScratch<D>,
     constrained: ConstrainedScratch<'a, D>,
+    slit: SlitScratch<D>,
 }
 
 impl<'a, const D: usize> StencilMaker<'a, D> {
@@ -55,12 +60,22 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         params: ParticleDifferenceParams,
     ) -> Self {
         let plain = NodeFit::new(params.degree, params.weight);
-        Self { problem, feet, plain, constrained: ConstrainedFit::new(problem, feet, params) }
+        let (constrained, slit) = (ConstrainedFit::new(problem, feet, params), SlitFit::new(problem, params));
+        Self { problem, feet, plain, constrained, slit }
     }
 
     pub(super) fn scratch(&self) -> MakerScratch<'a, D> {
         let most = self.problem.supports.lists.max_count();
-        MakerScratch { plain: self.plain.scratch(most), constrained: self.constrained.scratch() }
+        MakerScratch {
+            plain: self.plain.scratch(most),
+            constrained: self.constrained.scratch(),
+            slit: SlitScratch::default(),
+        }
+    }
+
+    /// Whether a slit may change the stencil of node i.
+    pub(super) fn may_meet_slit(&self, i: usize) -> bool {
+        self.slit.may_matter(i)
     }
 
     /// `div(eta grad u)` at node i by a plain stencil over its neighbours.
@@ -77,13 +92,15 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
 
     /// The row of an interior node.
     pub(super) fn interior(&self, i: usize, scratch: &mut MakerScratch<'a, D>) -> Result<Row, MethodError> {
-        let stencil = self.stencil(i, &[self.diffusion(i)], false, scratch)?;
-        let [stencil] = stencil;
-        let Stencil { neighbors, mut coefficients, shift, constrained, enlarged } = stencil;
+        if let Some(row) = self.slit.on_slit(i, self.problem.supports.lists.of(i), &mut scratch.slit)? {
+            return Ok(row);
+        }
+        let [stencil] = self.stencil(i, &[self.diffusion(i)], false, scratch)?;
+        let Stencil { neighbors, mut coefficients, shift, constant, constrained, enlarged } = stencil;
         coefficients.iter_mut().for_each(|c| *c = -*c);
         let rhs = self.problem.source.map_or(0.0, |f| f[i]) - shift;
         let kind = if constrained { RowKind::Constrained } else { RowKind::Strong };
-        Ok(Row { node: i, neighbors, coefficients, row_sum: 0.0, rhs, kind, enlarged })
+        Ok(Row { node: i, neighbors, coefficients, row_sum: -constant, rhs, kind, enlarged })
     }
 
     /// The row of a boundary node on which u is not prescribed: the conditions of its faces, added.
@@ -106,13 +123,13 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
             direction.iter_mut().zip(touch.normal).for_each(|(d, n)| *d -= eta * n);
         }
         let [stencil] = self.stencil(i, &[Functional::Directional(direction)], true, scratch)?;
-        let Stencil { neighbors, mut coefficients, shift, enlarged, .. } = stencil;
+        let Stencil { neighbors, mut coefficients, shift, constant, enlarged, .. } = stencil;
         coefficients.iter_mut().for_each(|c| *c = -*c);
         Ok(Row {
             node: i,
             neighbors,
             coefficients,
-            row_sum,
+            row_sum: row_sum - constant,
             rhs: rhs - shift,
             kind: RowKind::StrongBoundary,
             enlarged,
@@ -128,7 +145,11 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         scratch: &mut MakerScratch<'a, D>,
     ) -> Result<[Stencil; N], MethodError> {
         let near = self.feet.is_near(i);
+        let meets = self.may_meet_slit(i);
         let attempt = |neighbors: &[u32], scratch: &mut MakerScratch<'a, D>| {
+            if meets && let Some(found) = self.slit.stencils(i, neighbors, functionals, &mut scratch.slit)? {
+                return Ok(found);
+            }
             if near {
                 self.constrained_stencils(i, neighbors, functionals, correct, scratch)
             } else {
@@ -150,7 +171,7 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         correct: bool,
         scratch: &mut MakerScratch<'a, D>,
     ) -> Result<[Stencil; N], MethodError> {
-        let MakerScratch { plain, constrained } = scratch;
+        let MakerScratch { plain, constrained, .. } = scratch;
         self.constrained.sort(i, neighbors, constrained)?;
         if constrained.sides.is_smooth() && constrained.sides.kept.len() == neighbors.len() {
             return self.plain_stencils(i, neighbors, functionals, correct, plain);

@@ -40,6 +40,7 @@ pub struct Sharp {
 impl Sharp {
     fn check<const D: usize>(&self, problem: &Problem<'_, D>) -> Result<(), MethodError> {
         problem.check()?;
+        problem.without_slits("sharp")?;
         let order = self.params.order;
         if order < 2 || !order.is_multiple_of(2) || order > MAX_ORDER[D - 1] {
             let what = format!(

@@ -12,4 +12,5 @@ mod invariance;
 mod jumps;
 mod neumann;
 mod particle_difference;
+mod slits;
 mod support;

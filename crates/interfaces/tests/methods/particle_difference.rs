@@ -45,7 +45,7 @@ fn normal<const D: usize>(direction: &[f64]) -> [f64; D] {
 }
 
 /// How far the rows are from the exact values, relative to what the values in them are multiplied by; and the gradient, relative to its size.
-fn defects<const D: usize>(
+pub(crate) fn defects<const D: usize>(
     setup: &Setup<D>,
     params: ParticleDifferenceParams,
     u: &[f64],
@@ -58,7 +58,8 @@ fn defects<const D: usize>(
     let (mut worst, mut slope, mut size) = (0.0_f64, 0.0_f64, 0.0_f64);
     for i in 0..u.len() {
         let (columns, values) = rows.rows.row(i);
-        let (mut sum, mut total) = (0.0, 0.0);
+        let constant = rows.rows.row_sum(i) * u[i];
+        let (mut sum, mut total) = (constant, constant.abs());
         for (&j, a) in columns.iter().zip(values) {
             sum += a * (u[j as usize] - u[i]);
             total += a.abs() * (u[j as usize].abs() + u[i].abs());

@@ -8,7 +8,7 @@ use meshless_geometry::{
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
 use meshless_interfaces::{
     BoundaryData, Condition, Discretization, Field, InterfaceJump, Material, Method, MethodError, Problem,
-    Supports, SystemSolution, solve,
+    SlitInterface, Supports, SystemSolution, solve,
 };
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
 
@@ -32,6 +32,7 @@ pub(crate) struct Setup<const D: usize> {
     condition: ConditionFn<D>,
     conditions: Vec<Vec<Condition>>,
     pub(crate) jumps: Vec<InterfaceJump<D>>,
+    pub(crate) slits: Vec<SlitInterface<D>>,
 }
 
 impl<const D: usize> BoundaryData<D> for Setup<D> {
@@ -59,6 +60,7 @@ impl<const D: usize> Setup<D> {
             condition: Arc::new(|_, _| Condition::Dirichlet(0.0)),
             conditions: Vec::new(),
             jumps: Vec::new(),
+            slits: Vec::new(),
         }
         .regions(vec![None], &[1.0])
         .conditions(|_, _| Condition::Dirichlet(0.0))
@@ -120,6 +122,7 @@ impl<const D: usize> Setup<D> {
             conditions: &self.conditions,
             boundary: self,
             jumps: &self.jumps,
+            slits: &self.slits,
         }
     }
 

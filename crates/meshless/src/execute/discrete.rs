@@ -3,7 +3,9 @@
 use std::time::Instant;
 
 use meshless_geometry::{Cloud, CloudParams, Domain, RegionMap, generate};
-use meshless_interfaces::{BoundaryData, Condition, InterfaceJump, Material, MethodError, Problem, Supports};
+use meshless_interfaces::{
+    BoundaryData, Condition, InterfaceJump, Material, MethodError, Problem, SlitInterface, Supports,
+};
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
 
 use super::Progress;
@@ -27,6 +29,7 @@ pub(crate) struct Discrete<const D: usize> {
     boundary: Boundary<D>,
     conditions: Vec<Vec<Condition>>,
     jumps: Vec<InterfaceJump<D>>,
+    slits: Vec<SlitInterface<D>>,
 }
 
 /// The exact solution at the nodes.
@@ -80,6 +83,7 @@ impl<const D: usize> Discrete<D> {
         let boundary = Boundary::new(scene, &domain);
         let conditions = boundary.at_nodes(scene, &cloud)?;
         let jumps = build::jumps::<D>(scene);
+        let slits = build::slits(scene, &domain)?;
         seconds.stencils = start.elapsed().as_secs_f64();
         Ok(Self {
             domain,
@@ -94,6 +98,7 @@ impl<const D: usize> Discrete<D> {
             boundary,
             conditions,
             jumps,
+            slits,
         })
     }
 
@@ -109,6 +114,7 @@ impl<const D: usize> Discrete<D> {
         self.boundary = Boundary::new(scene, &self.domain);
         self.conditions = self.boundary.at_nodes(scene, &self.cloud)?;
         self.jumps = build::jumps::<D>(scene);
+        self.slits = build::slits(scene, &self.domain)?;
         Ok(())
     }
 
@@ -126,6 +132,7 @@ impl<const D: usize> Discrete<D> {
             conditions: &self.conditions,
             boundary: &self.boundary as &dyn BoundaryData<D>,
             jumps: &self.jumps,
+            slits: &self.slits,
         }
     }
 

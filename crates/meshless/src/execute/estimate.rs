@@ -61,11 +61,16 @@ pub(super) fn against_coarser<const D: usize>(
     differences
         .iter()
         .for_each(|&(measure, difference, value)| norms.add(measure, difference - shift, value));
+    let singular = plan.effects.contains(&Effect::Slits);
     let smooth = !plan
         .effects
         .iter()
         .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
     let method = &plan.method.params;
-    let order = if smooth { method.order() } else { method.interface_order() };
+    let order = match (singular, smooth) {
+        (true, _) => 1,
+        (_, true) => method.order(),
+        (_, false) => method.interface_order(),
+    };
     Ok(Estimate { l2: Some(norms.l2() / (RATIO.powi(order as i32) - 1.0)), why_not: None })
 }

@@ -69,10 +69,10 @@ pub(super) fn report<const D: usize>(
 
 /// How far the solution leaves the range of its Dirichlet values, where a maximum principle says that it must not.
 fn overshoot(plan: &Plan, conditions: &[Vec<Condition>], min: f64, max: f64) -> Option<f64> {
-    let forced = plan
-        .effects
-        .iter()
-        .any(|e| matches!(e, Effect::Source | Effect::ValueJump | Effect::FluxJump | Effect::Robin));
+    let forced = plan.effects.iter().any(|e| {
+        let slits = matches!(e, Effect::Slits);
+        slits || matches!(e, Effect::Source | Effect::ValueJump | Effect::FluxJump | Effect::Robin)
+    });
     let fluxes = conditions
         .iter()
         .flatten()

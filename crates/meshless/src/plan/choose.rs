@@ -21,7 +21,19 @@ const TOLERANCE: f64 = 1e-11;
 pub(super) const FLOATING_CONTRAST: f64 = 10.0;
 
 pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error> {
-    let (name, why) = match scene.method.name {
+    let slits = survey.has(|e| matches!(e, Effect::Slits));
+    let named = scene.method.name;
+    if let (Some(slit), false) = (scene.slits.first(), knows_slits(named)) {
+        let message = format!("the method \"{}\" does not know slits", named.as_str());
+        return Err(slit
+            .place
+            .error(message, "use \"particle-difference\", or leave the choice to the plan")
+            .into());
+    }
+    let (name, why) = match named {
+        MethodName::Auto if slits => {
+            (MethodName::ParticleDifference, "a slit: stencils that do not see through it".to_owned())
+        }
         MethodName::Auto if survey.has_interface() => (
             MethodName::GfdmHybrid,
             "something jumps at an interface: balances there, stencils elsewhere".to_owned(),
@@ -35,6 +47,11 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     let wanted = params.support(dimension).unwrap_or(SUPPORT[dimension - 1]);
     let support = scene.method.options.support.unwrap_or(wanted);
     Ok(MethodPlan { name, why, support, params })
+}
+
+/// Methods that a scene with slits can name.
+fn knows_slits(name: MethodName) -> bool {
+    matches!(name, MethodName::Auto | MethodName::ParticleDifference)
 }
 
 pub(super) fn solver(scene: &Scene, unknowns: f64) -> SolverParams {

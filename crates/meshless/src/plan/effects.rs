@@ -32,6 +32,8 @@ pub enum Effect {
     PureNeumann,
     /// u changes with time.
     Time,
+    /// Interfaces end inside the domain.
+    Slits,
     /// The domain has holes.
     Holes,
     /// The boundary is not a box.
@@ -54,6 +56,7 @@ impl Effect {
             Self::Robin => "robin boundary",
             Self::PureNeumann => "pure neumann",
             Self::Time => "time",
+            Self::Slits => "slits",
             Self::Holes => "holes",
             Self::CurvedBoundary => "curved boundary",
             Self::GradedCloud => "graded cloud",
@@ -106,6 +109,7 @@ impl Survey {
             Effect::PureNeumann,
         );
         note(scene.time.is_some(), Effect::Time);
+        note(!scene.slits.is_empty(), Effect::Slits);
         note(!scene.holes.is_empty(), Effect::Holes);
         note(build::is_curved(scene), Effect::CurvedBoundary);
         note(scene.points.spacing.expr.as_constant().is_none(), Effect::GradedCloud);

@@ -62,7 +62,7 @@ fn condition(table: &Table<'_>) -> Result<ConditionSpec, SceneError> {
     }
 }
 
-fn robin(value: &Value<'_>) -> Result<ConditionSpec, SceneError> {
+pub(super) fn robin(value: &Value<'_>) -> Result<ConditionSpec, SceneError> {
     let table = value.subtable(&["a", "b", "g"])?;
     let field = |key: &str| table.require(key)?.data_expression();
     let (a, b, g) = (field("a")?, field("b")?, field("g")?);

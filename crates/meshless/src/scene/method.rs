@@ -73,7 +73,7 @@ const EVERY: &[MethodName] = &[
 const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
 
 /// Options and the methods that have them; none of the methods that are built has the last ones.
-const OPTIONS: [(&str, &[MethodName]); 12] = [
+const OPTIONS: [(&str, &[MethodName]); 13] = [
     ("smoothing", STRONG),
     ("log_scaling", STRONG),
     ("correction", STRONG),
@@ -83,6 +83,7 @@ const OPTIONS: [(&str, &[MethodName]); 12] = [
     ("weight", PARTICLE),
     ("wedge", PARTICLE),
     ("flux_weights", PARTICLE),
+    ("visibility", PARTICLE),
     ("ghosts", &[]),
     ("kernel", &[]),
     ("sigma", &[]),
@@ -146,6 +147,7 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         selection_tolerance: table.get("selection_tolerance").map(|value| tolerance(&value)).transpose()?,
         weight: table.get("weight").map(|value| value.one_of(&WEIGHTS)).transpose()?,
         flux_weights: flag("flux_weights")?,
+        visibility: flag("visibility")?,
         wedge: table.get("wedge").map(|value| value.one_of(&WEDGES)).transpose()?,
     })
 }

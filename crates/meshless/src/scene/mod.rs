@@ -17,6 +17,7 @@ mod reader;
 mod regions;
 mod root;
 mod shapes;
+mod slits;
 mod source;
 mod spec;
 #[cfg(test)]
@@ -32,8 +33,8 @@ pub use method::MethodNameError;
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
-    MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SolverName, WedgeName,
-    WeightName,
+    MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec, SlitSpec,
+    SolverName, WedgeName, WeightName,
 };
 
 pub use time::TimeSpec;
@@ -59,6 +60,8 @@ pub struct Scene {
     pub regions: Vec<RegionSpec>,
     /// Prescribed jumps, at most one entry for each pair of regions.
     pub interfaces: Vec<InterfaceSpec>,
+    /// Interfaces that end inside the domain; names are distinct, and 2-D only.
+    pub slits: Vec<SlitSpec>,
     /// Conditions, at least one; see [`BoundarySpec`] for which one holds where several match.
     pub boundaries: Vec<BoundarySpec>,
     /// What the scene overrides of the plan's choices.

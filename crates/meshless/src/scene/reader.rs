@@ -182,6 +182,13 @@ impl<'a> Value<'a> {
         }
     }
 
+    pub(super) fn not_negative(&self) -> Result<f64, SceneError> {
+        match self.number()? {
+            value if value >= 0.0 => Ok(value),
+            value => Err(self.error(format!("expected a number not below 0, found {value}"), "")),
+        }
+    }
+
     /// An integer within limits, both included.
     pub(super) fn integer(&self, least: u64, most: u64) -> Result<u64, SceneError> {
         let what = if most == u64::MAX {

@@ -8,9 +8,9 @@ use super::error::SceneError;
 use super::reader::Table;
 use super::source::{MAX_FILE_BYTES, Place, Source};
 use super::spec::OutputSpec;
-use super::{Scene, boundaries, domain, method, regions, time};
+use super::{Scene, boundaries, domain, method, regions, slits, time};
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "title",
     "dimension",
     "domain",
@@ -18,6 +18,7 @@ const KEYS: [&str; 13] = [
     "holes",
     "regions",
     "interfaces",
+    "slits",
     "boundaries",
     "accuracy",
     "method",
@@ -53,6 +54,7 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         title: root.require("title")?.text()?.to_owned(),
         dimension,
         interfaces: regions::interfaces(&root, &regions)?,
+        slits: slits::slits(&root)?,
         boundaries: boundaries::boundaries(&root, &domain, &holes)?,
         method: method::method(&root)?,
         time: time::time(&root)?,

@@ -163,6 +163,35 @@ pub struct InterfaceSpec {
     pub place: Place,
 }
 
+/// An interface that ends inside the domain.
+#[derive(Debug, Clone)]
+pub struct SlitSpec {
+    /// Name.
+    pub name: String,
+    /// Its vertices, at least two.
+    pub polyline: Vec<[f64; 2]>,
+    /// What holds on it.
+    pub condition: SlitConditionSpec,
+    /// Radius about its tips within which singular functions are used, not negative; none leaves it to the length.
+    pub enrichment: Option<f64>,
+    /// The table in the file.
+    pub place: Place,
+}
+
+/// What holds on a slit.
+#[derive(Debug, Clone)]
+pub enum SlitConditionSpec {
+    /// What jumps, from the right of the slit to its left; at least one of the two is given.
+    Jump {
+        /// `u_left - u_right`; none is zero.
+        jump: Option<ExprField>,
+        /// `(eta du/dn)_left - (eta du/dn)_right` with n to the left; none is zero.
+        flux_jump: Option<ExprField>,
+    },
+    /// The same condition on each side, with n into the slit; never one on du/dn.
+    OnEachSide(ConditionSpec),
+}
+
 /// A boundary condition for a part of the boundary.
 ///
 /// Entries are tried in the order of the file, and the first one whose face and `where` match a boundary point is
@@ -293,6 +322,8 @@ pub struct MethodOptions {
     pub wedge: Option<WedgeName>,
     /// Values beyond a stiff side count less.
     pub flux_weights: Option<bool>,
+    /// Nodes do not see through slits.
+    pub visibility: Option<bool>,
 }
 
 /// What to write besides the report; nothing, if the scene does not say.

@@ -5,7 +5,7 @@ use super::error::SceneError;
 use super::expression::ExprField;
 use super::reader::Table;
 use super::source::Place;
-use super::spec::{BoundarySpec, ConditionSpec, InterfaceSpec, RegionSpec};
+use super::spec::{BoundarySpec, ConditionSpec, InterfaceSpec, RegionSpec, SlitConditionSpec};
 
 /// Tolerance of a scene that gives none.
 const DEFAULT_TOLERANCE: f64 = 1e-4;
@@ -77,13 +77,20 @@ impl Scene {
         for InterfaceSpec { jump, flux_jump, .. } in &mut scene.interfaces {
             [jump, flux_jump].into_iter().flatten().for_each(|field| *field = at(field));
         }
-        for BoundarySpec { condition, .. } in &mut scene.boundaries {
-            match condition {
-                ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => {
-                    *f = at(f);
+        let condition_at = |condition: &mut ConditionSpec| match condition {
+            ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => *f = at(f),
+            ConditionSpec::Robin { a, b, g } => [a, b, g].into_iter().for_each(|f| *f = at(f)),
+        };
+        for slit in &mut scene.slits {
+            match &mut slit.condition {
+                SlitConditionSpec::Jump { jump, flux_jump } => {
+                    [jump, flux_jump].into_iter().flatten().for_each(|field| *field = at(field));
                 }
-                ConditionSpec::Robin { a, b, g } => [a, b, g].into_iter().for_each(|f| *f = at(f)),
+                SlitConditionSpec::OnEachSide(condition) => condition_at(condition),
             }
+        }
+        for BoundarySpec { condition, .. } in &mut scene.boundaries {
+            condition_at(condition);
         }
         scene
     }
@@ -100,8 +107,16 @@ impl Scene {
         for interface in &self.interfaces {
             data |= any(&interface.jump) || any(&interface.flux_jump);
         }
-        for boundary in &self.boundaries {
-            match &boundary.condition {
+        let on_slits = self.slits.iter().filter_map(|slit| match &slit.condition {
+            SlitConditionSpec::Jump { jump, flux_jump } => {
+                data |= any(jump) || any(flux_jump);
+                None
+            }
+            SlitConditionSpec::OnEachSide(condition) => Some(condition),
+        });
+        let on_slits: Vec<&ConditionSpec> = on_slits.collect();
+        for condition in self.boundaries.iter().map(|b| &b.condition).chain(on_slits) {
+            match condition {
                 ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => {
                     data |= varies(f);
                 }

@@ -3,6 +3,7 @@
 mod cases;
 mod checks;
 mod sections;
+mod slit;
 
 use super::claims::Claims;
 use super::jobs::Job;
@@ -18,7 +19,8 @@ pub(super) const ABOUT: &str = "Interface-immersed particle differences: as Yoon
     varies along the interface, the second derivative that the equation gives, and weights in units of the flux; against \
     the conservative hybrid on the same clouds. Seed 0 is the regular cloud of the paper.";
 
-pub(super) const CASES: [&str; 6] = ["circle", "corner-90", "corner-45", "cylinder", "ball", "contrast"];
+pub(super) const CASES: [&str; 7] =
+    ["circle", "corner-90", "corner-45", "cylinder", "slit", "ball", "contrast"];
 
 /// As the plan chooses it.
 const OURS: Variant = Variant { support: None, ..Variant::plain("particle-difference").directly() };
@@ -57,11 +59,13 @@ pub(super) fn run(options: &Options) -> Study {
             jobs.extend((0..3).map(|level| cases::contrast(variant, contrast, level)));
         }
     }
+    jobs.extend(slit::jobs(rungs.min(4)));
     runner.run_all(jobs);
     for ladder in LADDERS.iter().filter(|l| options.wants(l.case, OURS.method)) {
         checks::ladder(&runner, ladder, &mut claims);
     }
     checks::contrast(&runner, contrasts, &mut claims);
+    slit::claims(&runner, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
     let sections = sections::sections(&runner);

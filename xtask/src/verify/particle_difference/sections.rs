@@ -14,6 +14,9 @@ pub(super) fn sections(runner: &Runner<'_>) -> Vec<Section> {
     let wanted = |case: &str| runner.options.case.as_deref().is_none_or(|c| c == case);
     let mut sections: Vec<Section> =
         LADDERS.iter().filter(|l| wanted(l.case)).map(|ladder| section(runner, ladder)).collect();
+    if wanted("slit") {
+        sections.push(super::slit::section(runner));
+    }
     if wanted("contrast") {
         sections.push(contrast(runner));
     }

@@ -4,7 +4,7 @@ use meshless_interfaces::particle_difference::{ParticleDifferenceParams, Wedge};
 use meshless_stencils::Weight;
 
 use super::Steps;
-use crate::plan::effects::Survey;
+use crate::plan::effects::{Effect, Survey};
 use crate::scene::{Scene, WedgeName, WeightName};
 
 /// Exponent of the exponential weight at the radius of interaction. The paper does not give its own; with this one the
@@ -20,6 +20,8 @@ pub(super) fn params(scene: &Scene) -> ParticleDifferenceParams {
             WeightName::Exponential => Weight::Gaussian { decay: EXPONENTIAL_DECAY },
         }),
         flux_weights: options.flux_weights.unwrap_or(chosen.flux_weights),
+        visibility: options.visibility.unwrap_or(chosen.visibility),
+        enrichment: chosen.enrichment,
         wedge: options.wedge.map_or(chosen.wedge, |name| match name {
             WedgeName::Plane => Wedge::Plane,
             WedgeName::Varying => Wedge::Varying,
@@ -33,7 +35,7 @@ pub(super) fn steps(survey: &Survey) -> Steps {
         stencils: true,
         no_stencils: "",
         selection: false,
-        constrained: Some(survey.has_interface()),
+        constrained: Some(survey.has_interface() || survey.has(|e| matches!(e, Effect::Slits))),
         cells: 0.0,
         may_need_cells: false,
     }

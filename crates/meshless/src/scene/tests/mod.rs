@@ -1,6 +1,7 @@
 //! Scenes that are right, scenes that are wrong, and scenes that were mangled at random.
 
 mod mangled;
+mod slits;
 mod valid;
 mod wrong;
 mod wrong_shapes;
