@@ -75,7 +75,9 @@ pub mod report;
 pub mod scene;
 
 pub use error::Error;
-pub use execute::{Checkpoint, Frame, Picture, Progress, Silent, Solution, execute, execute_from};
+pub use execute::{
+    Checkpoint, Frame, Picture, Progress, Silent, Solution, execute, execute_from, linear_system,
+};
 pub use field::NodalField;
 pub use methods::{METHODS, MethodInfo};
 pub use outputs::write_outputs;

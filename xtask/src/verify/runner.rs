@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 use meshless::plan::{Plan, Stage};
 use meshless::scene::{LayoutName, Scene};
 use meshless::{Error, Silent, Solution};
-use meshless_sparse::SolverKind;
+use meshless_sparse::{PreconditionerKind, SolverKind};
 
 use super::options::Options;
 use super::row::Row;
@@ -43,6 +43,7 @@ pub(crate) fn solve(problem: &str, key: &Key, extra: Extra) -> Result<Solution, 
     plan.stages.retain(|stage| *stage != Stage::Estimate);
     if let Some(tolerance) = extra.krylov {
         plan.solver.kind = SolverKind::BiCgStab { l: 2 };
+        plan.solver.preconditioner = PreconditionerKind::Ilu0;
         plan.solver.tolerance = tolerance;
     }
     meshless::execute(&scene, &plan, &mut Silent)

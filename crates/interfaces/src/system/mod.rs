@@ -2,6 +2,7 @@
 
 mod floating;
 mod given;
+mod linear;
 mod prepared;
 
 use meshless_sparse::{SolveInfo, SolverParams, Split};
@@ -9,6 +10,7 @@ use meshless_sparse::{SolveInfo, SolverParams, Split};
 use crate::{Discretization, MethodError, Problem};
 use floating::Floating;
 pub(crate) use floating::FloatingParts;
+pub use linear::{LinearSystem, linear_system};
 pub use prepared::PreparedSystem;
 
 /// Part of sources and fluxes that may be left over in a pure Neumann problem, relative to their size: a scene that

@@ -2,6 +2,7 @@
 
 mod discrete;
 mod estimate;
+mod linear;
 mod measure;
 mod picture;
 mod summary;
@@ -16,6 +17,7 @@ use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
 use crate::{Error, NodalField};
 pub(crate) use discrete::{Discrete, Exact};
+pub use linear::linear_system;
 pub use picture::Picture;
 use unsteady::History;
 pub use unsteady::{Checkpoint, Frame};

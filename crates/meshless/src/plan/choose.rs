@@ -1,6 +1,6 @@
 //! Decisions: method, solver, stages.
 
-use meshless_sparse::{PreconditionerKind, SolverKind, SolverParams};
+use meshless_sparse::{MultigridParams, PreconditionerKind, SolverKind, SolverParams};
 
 use super::effects::{Effect, Survey};
 use super::{MethodParams, MethodPlan, Skipped, Stage, method};
@@ -11,8 +11,8 @@ use crate::scene::{MethodName, Scene, SolverName};
 /// occurs in a lattice, where round-off would decide who is a neighbour.
 const SUPPORT: [f64; 3] = [3.1, 2.9, 2.2];
 
-/// Unknowns up to which the direct solver is faster than the Krylov solver, by dimension; see `docs/sparse.md`.
-const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 150_000.0, 1_500.0];
+/// Unknowns up to which the direct solver is faster than multigrid, by dimension; see `docs/multigrid.md`.
+const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 30_000.0, 1_500.0];
 
 /// Relative true residual at which the Krylov solver stops.
 const TOLERANCE: f64 = 1e-11;
@@ -60,12 +60,15 @@ pub(super) fn solver(scene: &Scene, unknowns: f64) -> SolverParams {
         SolverName::Direct => SolverKind::Direct,
         SolverName::BiCgStab => SolverKind::BiCgStab { l: 2 },
         SolverName::Gmres => SolverKind::Gmres { restart: 60 },
-        SolverName::Auto | SolverName::Multigrid if direct => SolverKind::Direct,
-        SolverName::Auto | SolverName::Multigrid => SolverKind::BiCgStab { l: 2 },
+        SolverName::Auto if direct => SolverKind::Direct,
+        SolverName::Auto | SolverName::Multigrid => SolverKind::Multigrid,
     };
     SolverParams {
         kind,
-        preconditioner: PreconditionerKind::Ilu0,
+        preconditioner: match kind {
+            SolverKind::Multigrid => PreconditionerKind::Multigrid(MultigridParams::default()),
+            _ => PreconditionerKind::Ilu0,
+        },
         tolerance: TOLERANCE,
         ..SolverParams::default()
     }

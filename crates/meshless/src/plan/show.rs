@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use meshless_sparse::SolverKind;
+use meshless_sparse::{AUTO_RESTART, SolverKind};
 
 use super::{Plan, Stage};
 
@@ -42,6 +42,7 @@ impl Plan {
         match self.solver.kind {
             SolverKind::BiCgStab { l } => format!("bicgstab({l}) + {preconditioner}"),
             SolverKind::Gmres { restart } => format!("gmres({restart}) + {preconditioner}"),
+            SolverKind::Multigrid => format!("gmres({AUTO_RESTART}) + {preconditioner}"),
             _ => "direct".to_owned(),
         }
     }

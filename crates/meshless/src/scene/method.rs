@@ -124,10 +124,7 @@ fn method_name(value: &Value<'_>) -> Result<MethodName, SceneError> {
 }
 
 fn solver_name(value: &Value<'_>) -> Result<SolverName, SceneError> {
-    match value.one_of(&SOLVERS)? {
-        SolverName::Multigrid => Err(value.not_supported("\"multigrid\"", "use \"auto\"")),
-        solver => Ok(solver),
-    }
+    value.one_of(&SOLVERS)
 }
 
 fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, SceneError> {

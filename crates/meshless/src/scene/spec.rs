@@ -276,7 +276,7 @@ pub enum SolverName {
     BiCgStab,
     /// `gmres`
     Gmres,
-    /// `multigrid`; recognised, and refused by the reader until it is built.
+    /// `multigrid`
     Multigrid,
 }
 

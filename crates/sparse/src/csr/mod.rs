@@ -1,11 +1,13 @@
 //! Compressed sparse rows.
 
 mod build;
+mod multiply;
 mod product;
 mod transform;
 
 pub use build::RowBuilder;
 pub(crate) use build::build_rows;
+pub(crate) use multiply::computed_rows;
 pub(crate) use product::for_each_row;
 
 use crate::error::MatrixError;

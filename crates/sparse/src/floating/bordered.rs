@@ -123,6 +123,12 @@ impl Bordered {
         Csr::from_trusted(self.n(), offsets, indices, values)
     }
 
+    /// The right-hand side that belongs to [`Bordered::pinned_matrix`].
+    #[must_use]
+    pub fn pinned_rhs(&self) -> Vec<f64> {
+        self.without_pinned(self.rhs.clone())
+    }
+
     /// Solves the system: one factorisation or preconditioner of `A'`, one solution for each extra unknown and one for
     /// the right-hand side, the Schur complement `D - C A'^-1 B'` by Gaussian elimination, and one step of
     /// iterative refinement on the whole.

@@ -25,6 +25,15 @@ impl IncompleteLu {
     pub fn nnz(&self) -> usize {
         self.values.len()
     }
+
+    /// Bytes that the factors occupy.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.offsets)
+            + size_of_val(&*self.diagonal)
+            + size_of_val(&*self.indices)
+            + size_of_val(&*self.values)
+    }
 }
 
 impl Preconditioner for IncompleteLu {

@@ -12,8 +12,10 @@ pub use jacobi::Jacobi;
 pub use factors::IncompleteLu;
 
 use crate::csr::Csr;
-use crate::error::MatrixError;
+use crate::multigrid::{HierarchyInfo, Multigrid, MultigridParams};
+use crate::solver::SolveError;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// An approximation of `A^-1`. Set up once for a matrix whose rows are scaled, then applied any number of times.
 /// Multigrid, too, is one of these.
@@ -29,6 +31,15 @@ pub trait Preconditioner: Debug + Send + Sync {
     /// Pivots that were replaced because they were almost zero.
     fn replaced_pivots(&self) -> usize {
         0
+    }
+    /// Whether it is one and the same linear map at every application. Short recurrences need that; GMRES becomes
+    /// flexible where it is not so.
+    fn is_linear(&self) -> bool {
+        true
+    }
+    /// The levels, of multigrid.
+    fn hierarchy(&self) -> Option<&HierarchyInfo> {
+        None
     }
 }
 
@@ -50,6 +61,8 @@ pub enum PreconditionerKind {
         /// Entries below this part of the norm of the row are dropped.
         drop: f64,
     },
+    /// Algebraic multigrid.
+    Multigrid(MultigridParams),
 }
 
 impl PreconditionerKind {
@@ -61,20 +74,26 @@ impl PreconditionerKind {
             Self::Jacobi => "Jacobi",
             Self::Ilu0 => "ILU(0)",
             Self::Ilut { .. } => "ILUT",
+            Self::Multigrid(_) => "multigrid",
         }
     }
 
-    /// Sets the preconditioner up.
+    /// Sets the preconditioner up. Only multigrid asks for the weights of rows, see [`Multigrid::new`].
     ///
     /// # Errors
-    /// [`MatrixError::NotSquare`].
-    pub fn build(self, matrix: &Csr) -> Result<Box<dyn Preconditioner>, MatrixError> {
+    /// A matrix that is not square; those of [`Multigrid::new`].
+    pub fn build(
+        self,
+        matrix: &Arc<Csr>,
+        weights: Option<&[f64]>,
+    ) -> Result<Box<dyn Preconditioner>, SolveError> {
         matrix.require_square()?;
         Ok(match self {
             Self::None => Box::new(NoPreconditioner),
             Self::Jacobi => Box::new(Jacobi::new(matrix)?),
             Self::Ilu0 => Box::new(ilu0(matrix)?),
             Self::Ilut { fill, drop } => Box::new(ilut(matrix, fill, drop)?),
+            Self::Multigrid(params) => Box::new(Multigrid::new(Arc::clone(matrix), weights, &params)?),
         })
     }
 }

@@ -89,7 +89,8 @@ impl Factors {
         }
     }
 
-    fn apply(&self, x: &mut [f64]) {
+    /// `x` becomes `A^-1 x`, without refinement.
+    pub(crate) fn apply(&self, x: &mut [f64]) {
         let n = x.len();
         let x = MatMut::from_column_major_slice_mut(x, n, 1);
         match &self.kind {

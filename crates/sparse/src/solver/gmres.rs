@@ -1,4 +1,5 @@
-//! GMRES (Saad and Schultz 1986), preconditioned from the right, by modified Gram-Schmidt with a second pass where
+//! GMRES (Saad and Schultz 1986), preconditioned from the right, flexible where the
+//! preconditioner changes (Saad, SIAM J. Sci. Comput. 14, 1993), by modified Gram-Schmidt with a second pass where
 //! the first one cancelled (Daniel, Gragg, Kaufman and Stewart 1976).
 
 use super::krylov::{Cycle, CycleEnd};
@@ -17,6 +18,8 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
     let beta = norm(r);
     let mut basis = vec![scaled(r, 1.0 / beta)];
     let mut triangle = Triangle::new(beta);
+    let flexible = !cycle.m.is_linear();
+    let mut directions = Vec::new();
     let mut z = vec![0.0; n];
     let mut end = CycleEnd::Restart;
     while triangle.columns.len() < restart {
@@ -26,6 +29,9 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
         }
         let mut w = vec![0.0; n];
         cycle.apply(&basis[basis.len() - 1], &mut z, &mut w);
+        if flexible {
+            directions.push(z.clone());
+        }
         let before = norm(&w);
         let mut column = orthogonalise(&basis, &mut w, before);
         let length = norm(&w);
@@ -42,6 +48,12 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
             break;
         }
         basis.push(scaled(&w, 1.0 / length));
+    }
+    if flexible {
+        for (y, z) in triangle.solve().iter().zip(&directions) {
+            axpy(*y, z, d);
+        }
+        return end;
     }
     r.fill(0.0);
     for (y, v) in triangle.solve().iter().zip(&basis) {

@@ -2,6 +2,7 @@
 
 mod bicgstab;
 mod cg;
+mod chain;
 mod direct;
 mod error;
 mod gmres;
@@ -9,9 +10,11 @@ mod krylov;
 mod prepared;
 mod scaling;
 
+pub(crate) use direct::Factors;
 pub use error::SolveError;
 pub use krylov::LinearOperator;
 pub use prepared::{Prepared, solve};
+pub(crate) use scaling::Scaled;
 
 use crate::precond::PreconditionerKind;
 
@@ -22,19 +25,23 @@ pub const AUTO_DIRECT_MAX: usize = 20_000;
 /// Default of [`SolverParams::tolerance`], near what rounding leaves of a residual.
 pub const DEFAULT_TOLERANCE: f64 = 1e-12;
 
-/// Vectors that [`SolverKind::Auto`] lets GMRES keep.
+/// Vectors that [`SolverKind::Multigrid`] lets GMRES keep: more than a solve that goes well needs.
 pub const AUTO_RESTART: usize = 60;
 
 /// How to solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SolverKind {
-    /// Direct up to [`AUTO_DIRECT_MAX`] unknowns, GMRES with [`AUTO_RESTART`] vectors above.
+    /// [`SolverKind::Direct`] up to [`AUTO_DIRECT_MAX`] unknowns, [`SolverKind::Multigrid`] above.
     #[default]
     Auto,
     /// Sparse factorisation, `L L^T` of a symmetric matrix with a positive diagonal that has one and `L U`
     /// otherwise, with iterative refinement.
     Direct,
+    /// GMRES with [`AUTO_RESTART`] vectors, preconditioned by multigrid (with the parameters of
+    /// [`SolverParams::preconditioner`], if it is multigrid). A matrix that multigrid does not get along with is left
+    /// to BiCGStab(2) with ILU(0), and so are all further right-hand sides.
+    Multigrid,
     /// BiCGStab(l), Sleijpen and Fokkema, ETNA 1 (1993): short recurrences, `2 l` products in a step, for any matrix.
     /// `l` is 1 to 8; 1 is van der Vorst's BiCGStab, 2 copes with complex eigenvalues.
     BiCgStab {

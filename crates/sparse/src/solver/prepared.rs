@@ -1,11 +1,13 @@
 //! One matrix, prepared for any number of right-hand sides.
 
+use super::chain::Chain;
 use super::direct::Factors;
 use super::krylov::{Method, iterate};
 use super::scaling::Scaled;
-use super::{AUTO_DIRECT_MAX, AUTO_RESTART, SolveError, SolveInfo, SolverKind, SolverParams};
+use super::{AUTO_DIRECT_MAX, SolveError, SolveInfo, SolverKind, SolverParams};
 use crate::csr::Csr;
 use crate::error::MatrixError;
+use crate::multigrid::HierarchyInfo;
 use crate::precond::{Preconditioner, PreconditionerKind};
 
 /// Solves `A x = b` once.
@@ -28,6 +30,7 @@ pub struct Prepared {
 enum Engine {
     Direct(Factors),
     Krylov(Method, Box<dyn Preconditioner>),
+    Multigrid(Box<Chain>),
 }
 
 impl Prepared {
@@ -40,7 +43,11 @@ impl Prepared {
         check(params)?;
         let method = match params.kind {
             SolverKind::Auto if matrix.nrows() <= AUTO_DIRECT_MAX => None,
-            SolverKind::Auto => Some(Method::Gmres { restart: AUTO_RESTART }),
+            SolverKind::Auto | SolverKind::Multigrid => {
+                let scaled = Scaled::rows(matrix)?;
+                let chain = Chain::new(&scaled, params)?;
+                return Ok(Self { scaled, engine: Engine::Multigrid(Box::new(chain)), params: *params });
+            }
             SolverKind::Direct => None,
             SolverKind::BiCgStab { l } => Some(Method::BiCgStab { l }),
             SolverKind::Gmres { restart } => Some(Method::Gmres { restart }),
@@ -55,7 +62,11 @@ impl Prepared {
         } else {
             Scaled::rows(matrix)?
         };
-        let preconditioner = params.preconditioner.build(&scaled.matrix)?;
+        let weights = scaled.weights();
+        let preconditioner = params.preconditioner.build(&scaled.matrix, weights.as_deref())?;
+        if !preconditioner.is_linear() && !matches!(method, Method::Gmres { .. }) {
+            return Err(not_flexible(method));
+        }
         Ok(Self { scaled, engine: Engine::Krylov(method, preconditioner), params: *params })
     }
 
@@ -77,10 +88,21 @@ impl Prepared {
         let solved = match &self.engine {
             Engine::Direct(factors) => factors.solve_refined(matrix, &b),
             Engine::Krylov(method, m) => iterate(*method, matrix, m.as_ref(), &b, &self.params),
+            Engine::Multigrid(chain) => chain.solve(matrix, &b, &self.params),
         };
         match solved {
             Ok((x, info)) => Ok((self.scaled.unscale(x), info)),
             Err(error) => Err(self.unscale_best(error)),
+        }
+    }
+
+    /// The levels, where the preconditioner is multigrid.
+    #[must_use]
+    pub fn hierarchy(&self) -> Option<&HierarchyInfo> {
+        match &self.engine {
+            Engine::Direct(_) => None,
+            Engine::Krylov(_, m) => m.hierarchy(),
+            Engine::Multigrid(chain) => chain.hierarchy(),
         }
     }
 
@@ -89,6 +111,17 @@ impl Prepared {
             *best = self.scaled.unscale(std::mem::take(best));
         }
         error
+    }
+}
+
+fn not_flexible(method: Method) -> SolveError {
+    SolveError::BadParameter {
+        what: "the number of inner iterations of the preconditioner",
+        value: 2.0,
+        expected: match method {
+            Method::Cg => "conjugate gradients need a linear preconditioner: take the V or W cycle, or GMRES",
+            _ => "BiCGStab(l) needs a linear preconditioner: take the V or W cycle, or GMRES",
+        },
     }
 }
 

@@ -2,11 +2,12 @@
 
 use super::SolveError;
 use crate::csr::Csr;
+use std::sync::Arc;
 
 /// A matrix scaled so that the sizes of coefficients do not decide about pivots and norms.
 #[derive(Debug)]
 pub(crate) struct Scaled {
-    pub(crate) matrix: Csr,
+    pub(crate) matrix: Arc<Csr>,
     /// Factors of the rows.
     rows: Vec<f64>,
     /// Factors of the columns; none if only rows are scaled.
@@ -30,7 +31,7 @@ impl Scaled {
             }
             rows.push(reciprocal_power(largest));
         }
-        Ok(Self { matrix: matrix.row_scaled(&rows)?, rows, columns: None })
+        Ok(Self { matrix: Arc::new(matrix.row_scaled(&rows)?), rows, columns: None })
     }
 
     /// Rows and columns with the same factors and a diagonal between 1 and 4, which keeps a symmetric matrix so.
@@ -48,7 +49,16 @@ impl Scaled {
                 row.push(j as usize, a * factors[i] * factors[j as usize]);
             }
         })?;
-        Ok(Some(Self { matrix: scaled, rows: factors.clone(), columns: Some(factors) }))
+        Ok(Some(Self { matrix: Arc::new(scaled), rows: factors.clone(), columns: Some(factors) }))
+    }
+
+    /// What every row counts for: by what it was multiplied, taken back. None where columns are scaled as well, which
+    /// keeps a symmetric matrix symmetric.
+    pub(crate) fn weights(&self) -> Option<Vec<f64>> {
+        match self.columns {
+            None => Some(self.rows.iter().map(|f| 1.0 / f).collect()),
+            Some(_) => None,
+        }
     }
 
     pub(crate) fn rhs(&self, rhs: &[f64]) -> Vec<f64> {

@@ -292,7 +292,6 @@ fn method() {
                 "gfdm-classical",
             ),
             wrong("\"gfdm-hybrid\"", "«2»", "method.name", "expected a string", ""),
-            wrong("\"bicgstab\"", "«\"multigrid\"»", "method.solver", "not supported yet", "auto"),
             wrong("\"bicgstab\"", "«\"bicg\"»", "method.solver", "unknown name", "bicgstab"),
             wrong("order = 2", "order = «1»", "method.order", "from 2 to 8, found 1", ""),
             wrong(

@@ -1,0 +1,83 @@
+//! Aggregates: the unknowns of the next level.
+
+use super::strength::Graph;
+use crate::csr::Csr;
+
+/// In no aggregate.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// The aggregate of every node, or [`NONE`], and how many aggregates there are.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Aggregates {
+    pub(crate) of: Vec<u32>,
+    pub(crate) count: usize,
+}
+
+/// Standard aggregation (Vaněk, Mandel and Brezina, Computing 56, 1996, algorithm 2): nodes in order found an aggregate
+/// with all their strong neighbours if these are still free; what is left joins the aggregate to which it is tied most;
+/// the rest founds aggregates with the free neighbours it has. Nodes whose bonds are strong one way only, or not at all,
+/// join that of their largest entry; settled ones stay out.
+pub(crate) fn standard(a: &Csr, graph: &Graph) -> Aggregates {
+    let n = graph.len();
+    let mut of = vec![NONE; n];
+    let mut count: u32 = 0;
+    for i in 0..n {
+        let neighbors = graph.neighbors(i);
+        if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(|&j| of[j as usize] == NONE) {
+            of[i] = count;
+            neighbors.iter().for_each(|&j| of[j as usize] = count);
+            count += 1;
+        }
+    }
+    let founded = of.clone();
+    for i in (0..n).filter(|&i| founded[i] == NONE) {
+        let tied = graph.of(i).filter(|(j, _)| founded[*j] != NONE);
+        if let Some((j, _)) = tied.fold(None, stronger) {
+            of[i] = founded[j];
+        }
+    }
+    for i in 0..n {
+        if of[i] == NONE && !graph.neighbors(i).is_empty() {
+            of[i] = count;
+            for &j in graph.neighbors(i) {
+                if of[j as usize] == NONE {
+                    of[j as usize] = count;
+                }
+            }
+            count += 1;
+        }
+    }
+    adopt(a, graph, &mut of, &mut count);
+    Aggregates { of, count: count as usize }
+}
+
+/// The stronger of two neighbours, the first of equals.
+fn stronger(best: Option<(usize, f64)>, next: (usize, f64)) -> Option<(usize, f64)> {
+    if best.is_some_and(|b| b.1 >= next.1) { best } else { Some(next) }
+}
+
+/// Gives nodes without strong neighbours to the aggregate of the largest entry of their row that has the right sign, from
+/// the aggregates outwards; where no such entry leads to an aggregate, they are aggregates of their own.
+fn adopt(a: &Csr, graph: &Graph, of: &mut [u32], count: &mut u32) {
+    let mut left: Vec<usize> = (0..of.len()).filter(|&i| of[i] == NONE && !graph.settled[i]).collect();
+    while !left.is_empty() {
+        let found: Vec<(usize, u32)> = left.iter().filter_map(|&i| Some((i, nearest(a, of, i)?))).collect();
+        if found.is_empty() {
+            for &i in &left {
+                of[i] = *count;
+                *count += 1;
+            }
+            return;
+        }
+        found.iter().for_each(|&(i, k)| of[i] = k);
+        left.retain(|&i| of[i] == NONE);
+    }
+}
+
+fn nearest(a: &Csr, of: &[u32], i: usize) -> Option<u32> {
+    let diagonal = a.get(i, i);
+    let (columns, values) = a.row(i);
+    let entries = columns.iter().zip(values).map(|(&j, v)| (j as usize, -v / diagonal));
+    let tied = entries.filter(|(j, s)| *j != i && *s > 0.0 && of[*j] != NONE);
+    tied.fold(None, stronger).map(|(j, _)| of[j])
+}

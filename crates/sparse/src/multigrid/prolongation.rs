@@ -1,0 +1,56 @@
+//! From aggregates to interpolation.
+
+use super::aggregation::{Aggregates, NONE};
+use super::strength::Graph;
+use crate::csr::{Csr, computed_rows};
+
+/// Damping of the Jacobi step that smooths the prolongation: 4/3 over the largest eigenvalue of `D^-1 A` (Vaněk, Mandel and
+/// Brezina 1996), for which Gershgorin's bound on filtered rows is 2.
+const DAMPING: f64 = 2.0 / 3.0;
+
+/// The prolongation after one damped Jacobi step with the filtered matrix, in difference form:
+/// `P_i = T_i - omega / d_i sum_j a_ij (T_j - T_i)` over strong neighbours `j`, with `d_i = -sum_j a_ij`. So its rows add up
+/// to 1 whatever is filtered out, and constants are reproduced exactly.
+pub(crate) fn smoothed(a: &Csr, graph: &Graph, aggregates: &Aggregates) -> Csr {
+    let of = &aggregates.of;
+    computed_rows(a.nrows(), aggregates.count, |i, places, block| {
+        let own = of[i];
+        if own == NONE {
+            return;
+        }
+        let strong = graph.neighbors(i);
+        let (columns, values) = a.row(i);
+        let mut size = 0.0;
+        for_each_common(columns, values, strong, |j, a_ij| {
+            if of[j as usize] != NONE {
+                size -= a_ij;
+            }
+        });
+        if size == 0.0 {
+            block.add(places, own, 1.0);
+            return;
+        }
+        let mut kept = 1.0;
+        block.add(places, own, 0.0);
+        for_each_common(columns, values, strong, |j, a_ij| {
+            let other = of[j as usize];
+            if other != NONE && other != own {
+                let weight = -DAMPING * a_ij / size;
+                block.add(places, other, weight);
+                kept -= weight;
+            }
+        });
+        block.add(places, own, kept);
+    })
+}
+
+/// Calls `f(j, a_ij)` for the columns of a row that are strong; both lists are sorted.
+fn for_each_common(columns: &[u32], values: &[f64], strong: &[u32], mut f: impl FnMut(u32, f64)) {
+    let mut next = 0;
+    for (&j, &a_ij) in columns.iter().zip(values) {
+        if next < strong.len() && strong[next] == j {
+            f(j, a_ij);
+            next += 1;
+        }
+    }
+}

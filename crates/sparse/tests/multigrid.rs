@@ -1,0 +1,183 @@
+//! Multigrid: few iterations at any size and contrast, the same on any number of threads.
+
+mod common;
+
+use common::{Grid, distance, grid};
+use meshless_sparse::{
+    ChainLink, Csr, CycleKind, DifferenceMatrix, GroupUnknowns, MultigridParams, PreconditionerKind,
+    Prepared, SmootherKind, SolveError, SolveInfo, SolverKind, SolverParams, Split, solve,
+};
+
+const RADIUS: f64 = 0.3;
+
+fn inside(x: [f64; 2]) -> bool {
+    (x[0] - 0.5).hypot(x[1] - 0.5) < RADIUS
+}
+
+/// A disc of another diffusivity in the middle of a square.
+fn disc(m: usize, contrast: f64) -> Grid {
+    grid(m, |x| if inside(x) { contrast } else { 1.0 }, 1.0, |x| x[0])
+}
+
+fn with(levels: MultigridParams) -> SolverParams {
+    SolverParams {
+        kind: SolverKind::Gmres { restart: 60 },
+        preconditioner: PreconditionerKind::Multigrid(levels),
+        tolerance: 1e-10,
+        ..SolverParams::default()
+    }
+}
+
+fn multigrid() -> SolverParams {
+    with(MultigridParams { coarsest: 40, ..MultigridParams::default() })
+}
+
+fn direct() -> SolverParams {
+    SolverParams { kind: SolverKind::Direct, ..SolverParams::default() }
+}
+
+fn iterations(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> SolveInfo {
+    solve(matrix, rhs, params).expect("converges").1
+}
+
+#[test]
+fn iterations_hardly_grow_with_nodes_or_contrast() {
+    let mut counts = Vec::new();
+    for contrast in [1e-10, 1e-4, 1.0] {
+        for m in [30, 60, 120] {
+            let grid = disc(m, contrast);
+            let info = iterations(&grid.reduced.matrix.to_csr(), &grid.reduced.rhs, &multigrid());
+            assert!(info.residual <= 1e-10);
+            counts.push(info.iterations);
+        }
+    }
+    assert!(counts.iter().all(|&n| n <= 18), "{counts:?}");
+    assert!(counts.chunks(3).all(|c| c[2] <= c[0] + 4), "{counts:?}");
+}
+
+#[test]
+fn a_stiff_disc_with_its_constant_split_off_is_as_accurate_as_by_the_direct_method() {
+    for contrast in [1e4, 1e10] {
+        let grid = disc(60, contrast);
+        let map = &grid.reduced.map;
+        let group: Vec<u32> =
+            map.iter().map(|&i| u32::from(inside(common::point(grid.m, i as usize)))).collect();
+        let pin = (0..map.len())
+            .filter(|&k| group[k] == 1)
+            .nth(group.iter().filter(|&&g| g == 1).count() / 2)
+            .expect("the disc has nodes");
+        let stiff =
+            GroupUnknowns { scale: 1.0 / contrast, chain: vec![ChainLink { cluster: 0, factor: 1.0 }] };
+        let groups = vec![GroupUnknowns { scale: 1.0, chain: Vec::new() }, stiff];
+        let split = Split::new(group, groups, vec![pin as u32]).unwrap();
+        let values = |params: &SolverParams| {
+            let system = split.apply(&grid.reduced.matrix, &grid.reduced.rhs).unwrap();
+            let solved = system.solve(params).unwrap();
+            split.recover(&solved.values, &solved.extra).unwrap()
+        };
+        let tight = SolverParams { tolerance: 1e-12, ..multigrid() };
+        let difference = distance(&values(&tight), &values(&direct()));
+        // The condition of what is left after the split is about the number of nodes.
+        assert!(difference < 1e-8, "{contrast:e}: {difference:e}");
+    }
+}
+
+#[test]
+fn every_cycle_and_smoother_converges() {
+    let grid = disc(50, 1e-4);
+    let (a, b) = (grid.reduced.matrix.to_csr(), &grid.reduced.rhs);
+    let exact = solve(&a, b, &direct()).unwrap().0;
+    for cycle in [CycleKind::V, CycleKind::W, CycleKind::K] {
+        for smoother in [SmootherKind::Jacobi, SmootherKind::GaussSeidel, SmootherKind::Ilu0] {
+            for sweeps in [1, 2] {
+                let levels = MultigridParams { cycle, smoother, sweeps, coarsest: 40, ..Default::default() };
+                let (x, info) = solve(&a, b, &with(levels)).unwrap();
+                assert!(info.iterations <= 30, "{levels:?}: {}", info.iterations);
+                assert!(distance(&x, &exact) < 1e-7, "{levels:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let grid = disc(110, 1e-6);
+    let (a, b) = (grid.reduced.matrix.to_csr(), &grid.reduced.rhs);
+    for smoother in [SmootherKind::GaussSeidel, SmootherKind::Ilu0] {
+        let levels = MultigridParams { smoother, ..Default::default() };
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| solve(&a, b, &with(levels)).unwrap())
+        };
+        let (one, three) = (on(1), on(3));
+        assert_eq!(one.0, three.0);
+        assert_eq!(one.1.iterations, three.1.iterations);
+    }
+}
+
+#[test]
+fn scaling_and_numbering_change_at_most_one_iteration() {
+    let grid = disc(50, 1e-3);
+    let (a, b) = (grid.reduced.matrix.to_csr(), grid.reduced.rhs.clone());
+    let reference = iterations(&a, &b, &multigrid()).iterations;
+    let all = vec![1e-7; a.nrows()];
+    let scaled_b: Vec<f64> = b.iter().map(|b| b * 1e-7).collect();
+    let scaled = iterations(&a.row_scaled(&all).unwrap(), &scaled_b, &multigrid()).iterations;
+    assert!(scaled.abs_diff(reference) <= 1, "{scaled} {reference}");
+    // Columns before rows: aggregates come out otherwise, and Gauss-Seidel runs in another direction.
+    let inner = grid.m - 2;
+    let order: Vec<u32> = (0..a.nrows()).map(|k| (k % inner * inner + k / inner) as u32).collect();
+    let permuted_b: Vec<f64> = order.iter().map(|&i| b[i as usize]).collect();
+    let permuted = iterations(&a.permuted(&order).unwrap(), &permuted_b, &multigrid()).iterations;
+    assert!(permuted.abs_diff(reference) <= 1, "{permuted} {reference}");
+}
+
+#[test]
+fn a_pure_neumann_problem_is_solved_as_far_as_its_data_allow() {
+    let grid = disc(40, 1.0);
+    let a = grid.matrix.to_csr();
+    let b: Vec<f64> = (0..a.nrows()).map(|i| common::point(grid.m, i)[0] - 0.5).collect();
+    let (x, info) = solve(&a, &b, &multigrid()).unwrap();
+    assert!(info.iterations <= 20, "{}", info.iterations);
+    let mut r = vec![0.0; x.len()];
+    a.residual(&x, &b, &mut r);
+    assert!(r.iter().all(|r| r.abs() < 1e-8));
+    // With a constant added, nothing can solve it; what is left is that constant.
+    let wrong: Vec<f64> = b.iter().map(|b| b + 1.0).collect();
+    let error = solve(&a, &wrong, &multigrid()).expect_err("sources without a sink");
+    let SolveError::NoConvergence { residual, .. } = error else { panic!("{error}") };
+    let unit = wrong.iter().map(|b| b * b).sum::<f64>().sqrt();
+    assert!((residual * unit / (a.nrows() as f64).sqrt() - 1.0).abs() < 0.1, "{residual}");
+}
+
+#[test]
+fn short_recurrences_refuse_what_changes_from_step_to_step() {
+    let grid = disc(30, 1.0);
+    let a = grid.reduced.matrix.to_csr();
+    let levels = MultigridParams { cycle: CycleKind::K, coarsest: 40, ..Default::default() };
+    let params = SolverParams { kind: SolverKind::BiCgStab { l: 2 }, ..with(levels) };
+    let error = Prepared::new(&a, &params).expect_err("not linear");
+    assert!(error.to_string().contains("GMRES"), "{error}");
+    let bad = with(MultigridParams { threshold: 1.5, ..Default::default() });
+    assert!(matches!(Prepared::new(&a, &bad), Err(SolveError::BadParameter { .. })));
+}
+
+#[test]
+fn what_multigrid_does_not_get_along_with_is_solved_by_what_steps_in() {
+    // A rotation in every pair of unknowns: no row has a neighbour with the right sign, so there are no levels.
+    let n = 2000;
+    let matrix = DifferenceMatrix::from_rows(n, |i, row| {
+        let (partner, sign) = if i % 2 == 0 { (i + 1, 1.0) } else { (i - 1, -1.0) };
+        row.push(partner, 3.0 * sign);
+        row.push((i + 2) % n, 0.3);
+        row.add_to_row_sum(0.5 + 3.0 * sign);
+    })
+    .unwrap();
+    let a = matrix.to_csr();
+    let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
+    let mut b = vec![0.0; n];
+    a.mul_vec(&exact, &mut b);
+    let params = SolverParams { kind: SolverKind::Multigrid, tolerance: 1e-11, ..SolverParams::default() };
+    let (x, info) = solve(&a, &b, &params).unwrap();
+    assert!(distance(&x, &exact) < 1e-8, "{}", info.name);
+}

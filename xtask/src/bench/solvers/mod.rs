@@ -1,0 +1,103 @@
+//! Multigrid on every kind of matrix: iterations, complexity, set-up, memory.
+
+mod systems;
+
+use std::time::Instant;
+
+use meshless::sparse::{MultigridParams, PreconditionerKind, Prepared, SolveError, SolverKind, SolverParams};
+
+use super::Outcome;
+use super::table::Table;
+use systems::{Kind, system};
+
+const CONTRASTS: [f64; 3] = [1.0, 1e4, 1e10];
+
+const UNKNOWNS: [usize; 3] = [10_000, 100_000, 1_000_000];
+
+/// Unknowns up to which the dearest rows, 65 entries each, are set up.
+const GHOSTS_MAX: usize = 100_000;
+
+/// The residual at which the targets count.
+const TOLERANCE: f64 = 1e-10;
+
+/// Vectors that GMRES keeps.
+const RESTART: usize = 60;
+
+/// Products after which a row of the table says that there are too many.
+const PATIENCE: usize = 120;
+
+/// More than a unit of work: the table has a row for every matrix, and is printed as it grows.
+pub(super) fn run() -> Outcome {
+    let head = [
+        "",
+        "unknowns",
+        "contrast",
+        "entries/row",
+        "iterations",
+        "residual",
+        "complexity",
+        "set-up (s)",
+        "solve (s)",
+        "set-up (iterations)",
+        "us/unknown",
+        "bytes/unknown",
+    ];
+    let mut table = Table::new(&head);
+    for kind in Kind::ALL {
+        for unknowns in UNKNOWNS {
+            for contrast in CONTRASTS {
+                if kind != Kind::Ghosts || unknowns <= GHOSTS_MAX {
+                    table.row(kind.name(), figures(kind, unknowns, contrast)?);
+                }
+            }
+        }
+    }
+    Ok(vec![table])
+}
+
+fn figures(
+    kind: Kind,
+    unknowns: usize,
+    contrast: f64,
+) -> Result<Vec<String>, Box<dyn std::error::Error + Send + Sync>> {
+    let system = system(kind, unknowns, contrast)?;
+    let params = SolverParams {
+        kind: SolverKind::Gmres { restart: RESTART },
+        preconditioner: PreconditionerKind::Multigrid(MultigridParams::default()),
+        tolerance: TOLERANCE,
+        max_iterations: PATIENCE,
+        ..SolverParams::default()
+    };
+    let n = system.matrix.nrows() as f64;
+    let start = Instant::now();
+    let prepared = Prepared::new(&system.matrix, &params)?;
+    let setup = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let solved = prepared.solve(&system.rhs);
+    let solve = start.elapsed().as_secs_f64();
+    let (iterations, residual) = match solved {
+        Ok((_, info)) => (info.iterations, info.residual),
+        Err(
+            SolveError::NoConvergence { iterations, residual, .. }
+            | SolveError::BreakDown { iterations, residual, .. },
+        ) => (iterations, residual),
+        Err(error) => return Err(error.into()),
+    };
+    let (complexity, bytes) =
+        prepared.hierarchy().map_or((f64::NAN, 0), |h| (h.operator_complexity(), h.bytes));
+    // The scaled matrix, the levels, and the vectors of GMRES.
+    let bytes = system.matrix.bytes() + bytes + 8 * (iterations.min(RESTART) + 6) * system.matrix.nrows();
+    Ok(vec![
+        format!("{n}"),
+        format!("{contrast:.0e}"),
+        format!("{:.1}", system.matrix.nnz() as f64 / n),
+        if residual > TOLERANCE { format!("> {iterations}") } else { format!("{iterations}") },
+        format!("{residual:.0e}"),
+        format!("{complexity:.2}"),
+        format!("{setup:.2}"),
+        format!("{solve:.2}"),
+        format!("{:.1}", setup * iterations as f64 / solve),
+        format!("{:.2}", 1e6 * (setup + solve) / n),
+        format!("{:.0}", bytes as f64 / n),
+    ])
+}
