@@ -73,7 +73,7 @@ impl Default for MultigridParams {
         Self {
             cycle: CycleKind::W,
             smoother: SmootherKind::GaussSeidel,
-            sweeps: 1,
+            sweeps: 2,
             threshold: 0.25,
             coarsest: 400,
         }

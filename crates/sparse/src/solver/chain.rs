@@ -9,8 +9,8 @@ use crate::precond::{IncompleteLu, Preconditioner, PreconditionerKind, ilu0};
 use crate::vector::axpy;
 use std::sync::{Arc, OnceLock};
 
-/// Products after which multigrid is given up: five times what it needs where it works.
-const PATIENCE: usize = 80;
+/// Products after which multigrid is given up: three times what it needs where it works.
+const PATIENCE: usize = 40;
 
 /// What steps in.
 const SUBSTITUTE: Method = Method::BiCgStab { l: 2 };
