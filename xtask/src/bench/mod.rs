@@ -27,11 +27,8 @@ const BENCHES: &[Bench] = &[
         "matrix-vector product against the bandwidth of the memory, incomplete factorisation",
         micro::sparse::run,
     ),
-<<<<<<< HEAD
     ("freespace", "convolution in free space against the bare transforms", micro::freespace::run),
-=======
     ("solvers", "multigrid against its targets: a ball in a box, six kinds of discretisation", solvers::run),
->>>>>>> 8dbbf16 (Algebraic multigrid: smoothed aggregation in difference form, taken by the plan where the direct solver stops paying)
     ("effects", "what each effect of a scene costs, and what the facade does", effects::run),
     ("scene", "a scene of 1e5 nodes and contrast 1e6, from points to solution", scene::run),
 ];

@@ -2,7 +2,7 @@
 //!
 //! What they give is the system of [`Split::apply`](meshless_sparse::Split::apply), and is solved like it.
 
-use meshless_sparse::Bordered;
+use meshless_sparse::{Bordered, Reduced};
 
 use super::{SystemParams, SystemSolution};
 use crate::method::SplitRows;
@@ -15,6 +15,27 @@ pub(super) fn solve<const D: usize>(
     constants: &SplitRows,
     params: &SystemParams,
 ) -> Result<SystemSolution, MethodError> {
+    let up_to_constant = !problem.is_anchored();
+    let (system, reduced) = bordered(problem, discretization, constants)?;
+    let solved = system.solve(&params.solver)?;
+    if up_to_constant {
+        super::check_balance(discretization, solved.extra[constants.split.extra()])?;
+    }
+    let w = reduced.expand(&solved.values, &problem.dirichlet())?;
+    let mut u = constants.split.recover(&w, &solved.extra)?;
+    if up_to_constant {
+        super::center(&mut u, &discretization.volumes);
+    }
+    let floating_constants = constants.split.extra();
+    Ok(SystemSolution { u, info: solved.info, floating_constants, up_to_constant })
+}
+
+/// The bordered system, and what elimination has left of the rows.
+pub(super) fn bordered<const D: usize>(
+    problem: &Problem<'_, D>,
+    discretization: &Discretization,
+    constants: &SplitRows,
+) -> Result<(Bordered, Reduced), MethodError> {
     let known = problem.dirichlet();
     let reduced = discretization.rows.eliminate(&known, &discretization.rhs)?;
     let mut unknown_of = vec![None; known.len()];
@@ -26,8 +47,7 @@ pub(super) fn solve<const D: usize>(
         .map(|column| column.iter().filter_map(|&(row, value)| of(row).map(|k: u32| (k, value))).collect());
     let mut columns: Vec<Vec<(u32, f64)>> = columns.collect();
     let mut pinned: Vec<u32> = constants.split.pinned().iter().filter_map(|&node| of(node)).collect();
-    let up_to_constant = !problem.is_anchored();
-    if up_to_constant {
+    if !problem.is_anchored() {
         // One node outside of the floating regions is pinned, and an extra unknown takes up what is not balanced.
         let ones = vec![1.0; constants.split.extra()];
         let levels = constants.split.recover(&vec![0.0; known.len()], &ones)?;
@@ -37,15 +57,5 @@ pub(super) fn solve<const D: usize>(
         columns.push((0..).zip(&discretization.volumes).map(|(row, &volume)| (row, volume)).collect());
     }
     let system = Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?;
-    let solved = system.solve(&params.solver)?;
-    if up_to_constant {
-        super::check_balance(discretization, solved.extra[constants.split.extra()])?;
-    }
-    let w = reduced.expand(&solved.values, &known)?;
-    let mut u = constants.split.recover(&w, &solved.extra)?;
-    if up_to_constant {
-        super::center(&mut u, &discretization.volumes);
-    }
-    let floating_constants = constants.split.extra();
-    Ok(SystemSolution { u, info: solved.info, floating_constants, up_to_constant })
+    Ok((system, reduced))
 }

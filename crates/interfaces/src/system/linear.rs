@@ -1,8 +1,8 @@
 //! The equations that the linear solver sees.
 
-use meshless_sparse::{Csr, Split};
+use meshless_sparse::{Bordered, Csr, Split};
 
-use super::{SystemParams, floating};
+use super::{SystemParams, floating, given};
 use crate::{Discretization, MethodError, Problem};
 
 /// A matrix with a right-hand side, as a discretisation hands them to the linear solver: prescribed values eliminated,
@@ -17,6 +17,12 @@ pub struct LinearSystem {
     pub extra: usize,
 }
 
+impl LinearSystem {
+    fn of(system: &Bordered) -> Self {
+        Self { matrix: system.pinned_matrix(), rhs: system.pinned_rhs(), extra: system.extra() }
+    }
+}
+
 /// The linear system of a discretised problem, for measurements and for other solvers.
 ///
 /// # Errors
@@ -26,6 +32,9 @@ pub fn linear_system<const D: usize>(
     discretization: &Discretization,
     params: &SystemParams,
 ) -> Result<LinearSystem, MethodError> {
+    if let Some(constants) = &discretization.constants {
+        return Ok(LinearSystem::of(&given::bordered(problem, discretization, constants)?.0));
+    }
     let reduced = discretization.rows.eliminate(&problem.dirichlet(), &discretization.rhs)?;
     let split = match params.split_floating {
         true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
@@ -37,5 +46,5 @@ pub fn linear_system<const D: usize>(
     } else {
         Split::trivial(n).apply_neumann(&reduced.matrix, &reduced.rhs, &discretization.volumes, n / 2)?
     };
-    Ok(LinearSystem { matrix: bordered.pinned_matrix(), rhs: bordered.pinned_rhs(), extra: bordered.extra() })
+    Ok(LinearSystem::of(&bordered))
 }
