@@ -4,6 +4,7 @@
 //! its own and says where it is from.
 
 pub mod fietier;
+pub mod head;
 pub mod kraus;
 pub mod order;
 pub mod particle_difference;
