@@ -8,6 +8,7 @@ pub mod head;
 pub mod kraus;
 pub mod order;
 pub mod particle_difference;
+pub mod sharp;
 pub mod small;
 pub mod smooth;
 pub mod solve;

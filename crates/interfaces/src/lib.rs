@@ -70,4 +70,6 @@ pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Sup
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};
 pub use slit::{SlitCondition, SlitInterface};
-pub use system::{LinearSystem, PreparedSystem, SystemParams, SystemSolution, linear_system, solve};
+pub use system::{
+    LinearSystem, PreparedSystem, SplitValues, SystemParams, SystemSolution, linear_system, solve,
+};

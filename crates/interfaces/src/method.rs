@@ -2,7 +2,7 @@
 
 use meshless_sparse::{DifferenceMatrix, Split};
 
-use crate::{MethodError, Problem, gradient};
+use crate::{MethodError, Problem, Sample, SystemSolution, gradient};
 
 /// A meshless discretisation of an elliptic interface problem.
 pub trait Method<const D: usize>: Sync {
@@ -14,6 +14,27 @@ pub trait Method<const D: usize>: Sync {
     /// Unless a method knows better: the gradient of a least-squares fit to the nodes of the same region.
     fn gradient(&self, problem: &Problem<'_, D>, u: &[f64]) -> Result<Vec<[f64; D]>, MethodError> {
         gradient::recover(problem, u)
+    }
+
+    /// The gradient of a solution, every node in its own region: that of its nodal values, unless the method has unknowns
+    /// of its own that say more than these.
+    fn gradient_of(
+        &self,
+        problem: &Problem<'_, D>,
+        solution: &SystemSolution,
+    ) -> Result<Vec<[f64; D]>, MethodError> {
+        self.gradient(problem, &solution.u)
+    }
+
+    /// Values and gradients of a solution anywhere, each point in its own region and `None` where no node of that is
+    /// near; `None` as a whole for methods that leave this to a [`Sampler`](crate::Sampler).
+    fn samples(
+        &self,
+        _problem: &Problem<'_, D>,
+        _solution: &SystemSolution,
+        _points: &[[f64; D]],
+    ) -> Result<Option<Vec<Option<Sample<D>>>>, MethodError> {
+        Ok(None)
     }
 }
 

@@ -3,6 +3,9 @@
 //! Golub and Van Loan, *Matrix Computations*, 4th ed., algorithms 5.2.1 and 5.4.1. No memory is allocated once the
 //! buffers have their size.
 
+/// What an updated square of a norm may have lost before it is formed anew: the rest has half of the digits.
+const CANCELLED: f64 = 1e-8;
+
 /// A factorisation `A P = Q R` of an n x m matrix, n >= 1.
 ///
 /// ```
@@ -28,7 +31,9 @@ pub struct Qr {
     diagonal: Vec<f64>,
     tau: Vec<f64>,
     pivots: Vec<usize>,
+    /// Squared norms of what is left of the columns, and what they were when last formed from the columns.
     norms: Vec<f64>,
+    fresh: Vec<f64>,
     rank: usize,
 }
 
@@ -99,29 +104,44 @@ impl Qr {
     }
 
     /// Factors with column pivoting, and stops at the first column below `tolerance` times the largest.
+    ///
+    /// The norms of what is left of the columns are updated from step to step, and formed anew where cancellation has
+    /// eaten too much of them (Golub and Van Loan, section 5.4.2).
     pub fn factor_pivoted(&mut self, tolerance: f64) {
         self.rank = 0;
         let mut largest = 0.0_f64;
+        for j in 0..self.columns {
+            let column = &self.a[j * self.rows..(j + 1) * self.rows];
+            self.norms[j] = dot(column, column);
+        }
+        self.fresh.clear();
+        self.fresh.extend(&self.norms);
         for k in 0..self.columns.min(self.rows) {
-            for j in k..self.columns {
-                let column = &self.a[j * self.rows + k..(j + 1) * self.rows];
-                self.norms[j] = dot(column, column);
-            }
             let pivot =
                 (k..self.columns).fold(k, |best, j| if self.norms[j] > self.norms[best] { j } else { best });
-            let norm = self.norms[pivot].sqrt();
+            let column = &self.a[pivot * self.rows + k..(pivot + 1) * self.rows];
+            let norm = dot(column, column).sqrt();
             largest = largest.max(norm);
             if norm <= tolerance * largest || norm == 0.0 {
                 return;
             }
             if pivot != k {
-                for row in 0..self.rows {
-                    self.a.swap(k * self.rows + row, pivot * self.rows + row);
-                }
+                let (head, tail) = self.a.split_at_mut(pivot * self.rows);
+                head[k * self.rows..(k + 1) * self.rows].swap_with_slice(&mut tail[..self.rows]);
                 self.pivots.swap(k, pivot);
+                self.norms.swap(k, pivot);
+                self.fresh.swap(k, pivot);
             }
             self.reflect(k);
             self.rank = k + 1;
+            for j in k + 1..self.columns {
+                let column = &self.a[j * self.rows + k..(j + 1) * self.rows];
+                self.norms[j] -= column[0] * column[0];
+                if self.norms[j] <= CANCELLED * self.fresh[j] {
+                    self.norms[j] = dot(&column[1..], &column[1..]);
+                    self.fresh[j] = self.norms[j];
+                }
+            }
         }
     }
 

@@ -14,6 +14,7 @@ mod order;
 mod particle_difference;
 mod row;
 mod runner;
+mod sharp;
 mod study;
 mod suite;
 mod variant;

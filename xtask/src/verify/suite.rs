@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::study::Study;
-use super::{cost, freespace, gfdm, hard, particle_difference};
+use super::{cost, freespace, gfdm, hard, particle_difference, sharp};
 
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ static SUITES: [Suite; 7] = [
     },
     later("dcpse"),
     Suite { name: "freespace", about: freespace::ABOUT, cases: &freespace::CASES, run: Some(freespace::run) },
-    later("sharp"),
+    Suite { name: "sharp", about: sharp::ABOUT, cases: &sharp::CASES, run: Some(sharp::run) },
     Suite { name: "hard", about: hard::ABOUT, cases: &hard::CASES, run: Some(hard::run) },
     Suite { name: "cost", about: cost::ABOUT, cases: &cost::CASES, run: Some(cost::run) },
 ];

@@ -17,6 +17,8 @@ pub(crate) struct Variant {
     pub(crate) flux_weights: Option<bool>,
     /// Nodes do not see through slits.
     pub(crate) visibility: Option<bool>,
+    /// Order of the stencils.
+    pub(crate) order: Option<usize>,
 }
 
 impl Variant {
@@ -33,6 +35,7 @@ impl Variant {
             wedge: None,
             flux_weights: None,
             visibility: None,
+            order: None,
         }
     }
 
@@ -63,6 +66,7 @@ impl Variant {
                 table += &format!("{key} = {value}\n");
             }
         };
+        push("order", self.order.map(|p| p.to_string()));
         push("smoothing", self.smoothing.map(|k| k.to_string()));
         push("log_scaling", self.log_scaling.map(|b| b.to_string()));
         push("conservative_neumann", self.conservative_neumann.map(|b| b.to_string()));
@@ -79,6 +83,7 @@ impl Variant {
     pub(crate) fn params(&self) -> Vec<String> {
         let mut params = Vec::new();
         let mut push = |text: Option<String>| params.extend(text);
+        push(self.order.map(|p| format!("order={p}")));
         push(self.smoothing.map(|k| format!("smoothing={k}")));
         push(self.log_scaling.map(|b| format!("log={b}")));
         push(
@@ -102,6 +107,9 @@ impl Variant {
             "gfdm-conservative" => "conservative".to_owned(),
             other => other.to_owned(),
         };
+        if let Some(p) = self.order {
+            label += &format!(", order {p}");
+        }
         if self.log_scaling == Some(true) {
             label += ", log";
         }

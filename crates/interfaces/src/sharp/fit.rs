@@ -53,7 +53,7 @@ pub(super) struct Combination {
 
 impl<const D: usize> Fit<D> {
     /// Fills and factors the matrix of a stencil.
-    pub(super) fn factor(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+    pub(super) fn factor(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         self.parts.prepare(maker, stencil);
         self.assemble(maker, stencil);
         if stencil.parts.len() == 1 {
@@ -69,7 +69,7 @@ impl<const D: usize> Fit<D> {
     /// left of its reproduction.
     pub(super) fn functional(
         &mut self,
-        stencil: &Stencil,
+        stencil: &Stencil<D>,
         axis: Option<usize>,
         out: &mut Combination,
     ) -> f64 {
@@ -96,7 +96,7 @@ impl<const D: usize> Fit<D> {
         remainder
     }
 
-    fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+    fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         let boundary: usize = stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum();
         let at_nodes = stencil.part_of.iter().filter(|&&part| !self.parts.is_harmonic(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
@@ -132,10 +132,10 @@ impl<const D: usize> Fit<D> {
     }
 
     /// Rows of the nodes: the value; the equation; conditions on the flux where there are any.
-    fn node_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+    fn node_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         let radius = stencil.radius;
         let points = maker.problem.cloud.points();
-        let center = &points[stencil.nodes[0] as usize];
+        let center = &stencil.center;
         let nodes = stencil.nodes.len();
         self.given.resize(nodes, Given::default());
         let mut jet = std::mem::take(&mut self.parts.jet);
@@ -190,9 +190,9 @@ impl<const D: usize> Fit<D> {
     }
 
     /// Rows of the interface points: the equation on both sides, the jump of u, the jump of the flux.
-    fn interface_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+    fn interface_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         let radius = stencil.radius;
-        let center = &maker.problem.cloud.points()[stencil.nodes[0] as usize];
+        let center = &stencil.center;
         let weight = maker.params.jump_weight;
         let mut jet = std::mem::take(&mut self.parts.jet);
         for &(index, places) in &stencil.points {

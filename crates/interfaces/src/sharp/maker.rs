@@ -54,7 +54,7 @@ pub(super) struct Maker<'a, const D: usize> {
 /// Memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
-    pub(super) stencil: Stencil,
+    pub(super) stencil: Stencil<D>,
     pub(super) fit: Fit<D>,
     pub(super) combination: Combination,
 }
@@ -117,23 +117,53 @@ impl<'a, const D: usize> Maker<'a, D> {
     /// Gathers and factors the stencil of node i, a larger one where the first does not determine its value. Leaves
     /// the combination of the value in `scratch`; returns whether the stencil was enlarged.
     pub(super) fn factor(&self, i: usize, scratch: &mut Scratch<D>) -> Result<bool, MethodError> {
+        let center = &self.problem.cloud.points()[i];
+        let outcome = self.factor_at(center, self.unknowns.part[i], scratch, |combination| {
+            1.0 - combination.values[0] > LEAST_COMPLEMENT
+        });
+        outcome.map_err(|remainder| MethodError::Unresolved {
+            node: i,
+            position: center.to_vec(),
+            nodes: scratch.stencil.nodes.len(),
+            remainder,
+            spacing: 0.5 * self.problem.cloud.spacing()[i],
+        })
+    }
+
+    /// The same round any point of a part; the error is what is left of the reproduction.
+    pub(super) fn factor_at(
+        &self,
+        center: &[f64; D],
+        own: u32,
+        scratch: &mut Scratch<D>,
+        accept: impl Fn(&Combination) -> bool,
+    ) -> Result<bool, f64> {
         let Scratch { stencil, fit, combination } = scratch;
         let mut count = self.params.stencil_nodes(D);
         let mut remainder = f64::INFINITY;
         for attempt in 0..=ENLARGEMENTS {
-            let center = &self.problem.cloud.points()[i];
-            stencil.gather(center, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
+            stencil.gather(center, own, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
             fit.factor(self, stencil);
             remainder = fit.functional(stencil, None, combination);
-            let complement = 1.0 - combination.values[0];
-            if remainder <= REPRODUCTION && complement > LEAST_COMPLEMENT {
+            if remainder <= REPRODUCTION && accept(combination) {
                 return Ok(attempt > 0);
             }
             count += count / 2;
         }
-        let spacing = 0.5 * self.problem.cloud.spacing()[i];
-        let position = self.problem.cloud.points()[i].to_vec();
-        Err(MethodError::Unresolved { node: i, position, nodes: stencil.nodes.len(), remainder, spacing })
+        Err(remainder)
+    }
+
+    /// The node nearest to a point.
+    pub(super) fn nearest_one(&self, x: &[f64; D]) -> Option<usize> {
+        self.nodes.nearest_one(x).map(|j| j as usize)
+    }
+
+    /// The node nearest to a point that is of a region.
+    pub(super) fn nearest_of(&self, label: u16, x: &[f64; D]) -> Option<usize> {
+        let asked = 2 * self.params.stencil_nodes(D);
+        let mut found = Vec::new();
+        let nearest = self.nodes.nearest(x, asked, &mut found);
+        nearest.map(|j| j as usize).find(|&j| self.problem.labels[j] == label)
     }
 
     /// The row of node i.

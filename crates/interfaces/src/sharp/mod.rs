@@ -7,13 +7,13 @@
 
 mod basis;
 mod fit;
-mod gradient;
 mod harmonic;
 mod interface;
 mod maker;
 mod params;
 mod particular;
 mod parts;
+mod sample;
 mod stencil;
 mod unknowns;
 
@@ -24,10 +24,11 @@ use meshless_sparse::DifferenceMatrix;
 use rayon::prelude::*;
 
 use crate::method::{Counts, Discretization, Method, RowKind, SplitRows};
-use crate::{MethodError, Problem};
+use crate::{MethodError, Problem, Sample, SystemSolution};
 use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
 pub use params::{Form, MAX_ORDER, SharpParams};
+use sample::Values;
 use unknowns::Unknowns;
 
 /// The sharp method.
@@ -86,14 +87,40 @@ impl<const D: usize> Method<D> for Sharp {
     /// The gradient of each node's own fit.
     fn gradient(&self, problem: &Problem<'_, D>, u: &[f64]) -> Result<Vec<[f64; D]>, MethodError> {
         self.with_maker(problem, |maker| {
-            (0..u.len())
-                .into_par_iter()
-                .map_init(Scratch::default, |scratch, i| maker.gradient(i, u, scratch))
-                .collect::<Vec<Result<[f64; D], MethodError>>>()
-                .into_iter()
-                .collect()
+            at_all_nodes(u.len(), |i, scratch| maker.gradient_of_values(i, u, scratch))
         })
     }
+
+    fn gradient_of(
+        &self,
+        problem: &Problem<'_, D>,
+        solution: &SystemSolution,
+    ) -> Result<Vec<[f64; D]>, MethodError> {
+        let values = Values::new(&solution.u, solution.split.as_ref());
+        self.with_maker(problem, |maker| {
+            at_all_nodes(solution.u.len(), |i, scratch| maker.gradient(i, &values, scratch))
+        })
+    }
+
+    fn samples(
+        &self,
+        problem: &Problem<'_, D>,
+        solution: &SystemSolution,
+        points: &[[f64; D]],
+    ) -> Result<Option<Vec<Option<Sample<D>>>>, MethodError> {
+        let values = Values::new(&solution.u, solution.split.as_ref());
+        self.with_maker(problem, |maker| Ok(Some(maker.samples(points, &values))))
+    }
+}
+
+/// Which node an error names must not depend on which thread was faster.
+fn at_all_nodes<T: Send, const D: usize>(
+    nodes: usize,
+    work: impl Fn(usize, &mut Scratch<D>) -> Result<T, MethodError> + Sync,
+) -> Result<Vec<T>, MethodError> {
+    let outcomes: Vec<Result<T, MethodError>> =
+        (0..nodes).into_par_iter().map_init(Scratch::default, |scratch, i| work(i, scratch)).collect();
+    outcomes.into_iter().collect()
 }
 
 fn assemble<const D: usize>(

@@ -69,7 +69,7 @@ pub(super) struct Parts<const D: usize> {
 
 impl<const D: usize> Parts<D> {
     /// Chooses the form of every part of a stencil and makes the particular parts.
-    pub(super) fn prepare(&mut self, maker: &Maker<'_, D>, stencil: &Stencil) {
+    pub(super) fn prepare(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         self.parts.resize_with(stencil.parts.len(), Part::default);
         self.columns = 0;
         for place in 0..stencil.parts.len() {
@@ -94,7 +94,7 @@ impl<const D: usize> Parts<D> {
     fn particular_part(
         &mut self,
         maker: &Maker<'_, D>,
-        stencil: &Stencil,
+        stencil: &Stencil<D>,
         label: usize,
         response: f64,
     ) -> Option<Source> {
@@ -103,7 +103,7 @@ impl<const D: usize> Parts<D> {
             return Some(Source::Constant(f));
         }
         let particular = maker.particular.as_ref()?;
-        let center = &maker.problem.cloud.points()[stencil.nodes[0] as usize];
+        let center = &stencil.center;
         let place = |z: &[f64; D]| std::array::from_fn(|k| center[k] + stencil.radius * z[k]);
         self.samples.clear();
         self.samples.extend(particular.samples.iter().map(place));

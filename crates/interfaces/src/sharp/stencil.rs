@@ -10,15 +10,17 @@ use super::unknowns::Unknowns;
 const POINTS_ASKED: usize = 24;
 
 /// A stencil.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Stencil {
+#[derive(Debug, Clone)]
+pub(super) struct Stencil<const D: usize> {
+    /// The node, or whatever point it is round.
+    pub(super) center: [f64; D],
     /// Distance of the farthest node.
     pub(super) radius: f64,
-    /// Nodes by distance, the node itself first.
+    /// Nodes by distance; round a node, that one comes first.
     pub(super) nodes: Vec<u32>,
     /// Place in `parts` of every node.
     pub(super) part_of: Vec<usize>,
-    /// Connected parts of regions, that of the node itself first.
+    /// Connected parts of regions, that of the center first.
     pub(super) parts: Vec<u32>,
     /// Points of interfaces between these parts, and the places of the parts of both sides.
     pub(super) points: Vec<(u32, [usize; 2])>,
@@ -27,20 +29,39 @@ pub(super) struct Stencil {
     near: Vec<u32>,
 }
 
-impl Stencil {
-    /// Gathers the stencil of `count` nodes round `center`.
-    pub(super) fn gather<const D: usize>(
+impl<const D: usize> Default for Stencil<D> {
+    fn default() -> Self {
+        Self {
+            center: [0.0; D],
+            radius: 0.0,
+            nodes: Vec::new(),
+            part_of: Vec::new(),
+            parts: Vec::new(),
+            points: Vec::new(),
+            linked: Vec::new(),
+            found: Vec::new(),
+            near: Vec::new(),
+        }
+    }
+}
+
+impl<const D: usize> Stencil<D> {
+    /// Gathers the stencil of `count` nodes round `center`, which lies in the part `own`.
+    pub(super) fn gather(
         &mut self,
         center: &[f64; D],
+        own: u32,
         count: usize,
         nodes: &CellList<'_, D>,
         unknowns: &Unknowns,
         interfaces: (&InterfacePoints<D>, &CellList<'_, D>),
     ) {
+        self.center = *center;
         self.nodes.clear();
         self.nodes.extend(nodes.nearest(center, count, &mut self.found));
         self.radius = self.found.last().map_or(0.0, |last| last.0.sqrt());
         self.parts.clear();
+        self.parts.push(own);
         self.part_of.clear();
         self.points.clear();
         for &j in &self.nodes {
@@ -56,7 +77,7 @@ impl Stencil {
         }
     }
 
-    fn gather_points<const D: usize>(
+    fn gather_points(
         &mut self,
         center: &[f64; D],
         (interfaces, index): (&InterfacePoints<D>, &CellList<'_, D>),
@@ -93,7 +114,7 @@ impl Stencil {
     }
 
     /// The places of the parts on both sides of a point, where both are in the stencil.
-    fn places<const D: usize>(&self, interfaces: &InterfacePoints<D>, point: u32) -> Option<[usize; 2]> {
+    fn places(&self, interfaces: &InterfacePoints<D>, point: u32) -> Option<[usize; 2]> {
         let sides = &interfaces.points[point as usize].sides;
         let place = |part: u32| self.parts.iter().position(|&p| p == part);
         Some([place(sides[0].part)?, place(sides[1].part)?])

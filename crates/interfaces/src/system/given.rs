@@ -4,7 +4,7 @@
 
 use meshless_sparse::{Bordered, Reduced};
 
-use super::{SystemParams, SystemSolution};
+use super::{SplitValues, SystemParams, SystemSolution};
 use crate::method::SplitRows;
 use crate::{Discretization, MethodError, Problem};
 
@@ -27,7 +27,8 @@ pub(super) fn solve<const D: usize>(
         super::center(&mut u, &discretization.volumes);
     }
     let floating_constants = constants.split.extra();
-    Ok(SystemSolution { u, info: solved.info, floating_constants, up_to_constant })
+    let split = Some(SplitValues { values: w, constants: solved.extra[..floating_constants].to_vec() });
+    Ok(SystemSolution { u, info: solved.info, floating_constants, up_to_constant, split })
 }
 
 /// The bordered system, and what elimination has left of the rows.

@@ -43,6 +43,17 @@ pub struct SystemSolution {
     pub floating_constants: usize,
     /// Whether u is determined only up to a constant.
     pub up_to_constant: bool,
+    /// The unknowns of a method that splits off constants itself.
+    pub split: Option<SplitValues>,
+}
+
+/// `w` and `C` of `u_i = sum_K sigma_K C_K + s_i w_i`: where `s` is tiny, `w` has digits that u has not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SplitValues {
+    /// `w`, one a node.
+    pub values: Vec<f64>,
+    /// `C`, one a constant.
+    pub constants: Vec<f64>,
 }
 
 /// Solves a discretised problem.
@@ -68,7 +79,13 @@ pub fn solve<const D: usize>(
     let rhs: Vec<f64> = known.iter().zip(&discretization.rhs).map(|(g, &b)| g.unwrap_or(b)).collect();
     let prepared = PreparedSystem::new(problem, rows.clone(), &is_known, params)?;
     let (u, info) = prepared.solve(&rhs)?;
-    Ok(SystemSolution { u, info, floating_constants: prepared.floating_constants(), up_to_constant: false })
+    Ok(SystemSolution {
+        u,
+        info,
+        floating_constants: prepared.floating_constants(),
+        up_to_constant: false,
+        split: None,
+    })
 }
 
 /// A pure Neumann problem: one node is pinned, and an extra unknown takes up what is not balanced.
@@ -93,7 +110,7 @@ fn solve_unanchored<const D: usize>(
     let floating_constants = split.extra();
     check_balance(discretization, solved.extra[floating_constants])?;
     center(&mut u, volumes);
-    Ok(SystemSolution { u, info, floating_constants, up_to_constant: true })
+    Ok(SystemSolution { u, info, floating_constants, up_to_constant: true, split: None })
 }
 
 /// Whether sources and fluxes balance: `lambda` times the volumes had to be added.

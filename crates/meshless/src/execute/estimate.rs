@@ -4,13 +4,16 @@
 //! difference over `2^q - 1` estimates that of the error. Where something jumps at an interface q = 1 is taken, which
 //! every method here reaches; else the order of the stencils. On clouds of irregular nodes the difference is itself
 //! irregular; expect a factor of three.
+//!
+//! A method that has a finer order of itself on the same stencils is compared with that instead, on the same cloud: the
+//! difference is the error but for that of the finer order.
 
-use meshless_interfaces::Sampler;
+use meshless_interfaces::{Sampler, SystemParams, solve};
 use rayon::prelude::*;
 
 use super::{Silent, Solved, solve_in};
 use crate::norms::ErrorNorms;
-use crate::plan::{Effect, Plan};
+use crate::plan::{Effect, MethodParams, Plan, Stage};
 use crate::report::Estimate;
 use crate::scene::Scene;
 use crate::{Error, build};
@@ -18,11 +21,44 @@ use crate::{Error, build};
 /// Spacing of the coarser cloud over that of the finer one.
 const RATIO: f64 = 2.0;
 
-pub(super) fn against_coarser<const D: usize>(
+/// The estimate of a method's own choice.
+pub(super) fn estimate<const D: usize>(
     scene: &Scene,
     plan: &Plan,
-    fine: &Solved<D>,
+    solved: &Solved<D>,
 ) -> Result<Estimate, Error> {
+    match plan.method.params.finer(D) {
+        Some(finer) if scene.time.is_none() => against_finer(plan, &finer, solved),
+        _ => against_coarser(scene, plan, solved),
+    }
+}
+
+fn against_finer<const D: usize>(
+    plan: &Plan,
+    finer: &MethodParams,
+    solved: &Solved<D>,
+) -> Result<Estimate, Error> {
+    let problem = solved.discrete.problem();
+    let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
+    let method = finer.build::<D>();
+    let outcome = method.discretize(&problem).and_then(|finer| solve(&problem, &finer, &params));
+    let better = match outcome {
+        Ok(better) => better,
+        Err(error) => {
+            return Ok(Estimate {
+                l2: None,
+                why_not: Some(format!("no solution of a higher order: {error}")),
+            });
+        }
+    };
+    let mut norms = ErrorNorms::default();
+    for ((&u, &better), measure) in solved.system.u.iter().zip(&better.u).zip(solved.discrete.measures()) {
+        norms.add(measure, u - better, better);
+    }
+    Ok(Estimate { l2: Some(norms.l2()), why_not: None })
+}
+
+fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>) -> Result<Estimate, Error> {
     let coarse_scene = build::with_spacing_times(scene, RATIO);
     let coarse = match solve_in::<D>(&coarse_scene, &plan.companion(), None, &mut Silent) {
         Ok(coarse) => coarse,

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use meshless_interfaces::Sampler;
+use meshless_interfaces::{Sample, Sampler};
 
 use super::Solved;
 use super::discrete::Exact;
 use crate::Error;
 use crate::norms::ErrorNorms;
+use crate::plan::Plan;
 use crate::report::{Errors, Probe, RegionErrors};
 use crate::scene::Scene;
 
@@ -53,24 +54,30 @@ pub(super) fn match_means<const D: usize>(solved: &mut Solved<D>, exact: &Exact<
 }
 
 /// Values at the probes; a probe outside of the domain has none.
-pub(super) fn probes<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<Vec<Probe>, Error> {
+pub(super) fn probes<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    solved: &Solved<D>,
+) -> Result<Vec<Probe>, Error> {
     if scene.probes.is_empty() {
         return Ok(Vec::new());
     }
     let problem = solved.discrete.problem();
-    let sampler = Sampler::new(&problem, &solved.system.u)?;
-    let mut scratch = sampler.scratch();
+    let places: Vec<[f64; D]> = scene.probes.iter().map(|probe| std::array::from_fn(|k| probe[k])).collect();
+    let values = match plan.method.params.build().samples(&problem, &solved.system, &places)? {
+        Some(samples) => samples,
+        None => {
+            let sampler = Sampler::new(&problem, &solved.system.u)?;
+            let mut scratch = sampler.scratch();
+            places.iter().map(|at| sampler.at(at, &mut scratch)).collect()
+        }
+    };
     let tolerance = 1e-9 * problem.domain.bounds().diameter();
-    Ok(scene
-        .probes
-        .iter()
-        .map(|probe| {
-            let at: [f64; D] = std::array::from_fn(|k| probe[k]);
-            let inside = problem.domain.contains(&at, tolerance);
-            let value = if inside { sampler.at(&at, &mut scratch).map(|s| s.value) } else { None };
-            Probe { at: at.to_vec(), value }
-        })
-        .collect())
+    let value = |(at, sample): (&[f64; D], Option<Sample<D>>)| {
+        let inside = problem.domain.contains(at, tolerance);
+        Probe { at: at.to_vec(), value: sample.filter(|_| inside).map(|s| s.value) }
+    };
+    Ok(places.iter().zip(values).map(value).collect())
 }
 
 fn norm<const D: usize>(x: &[f64; D]) -> f64 {

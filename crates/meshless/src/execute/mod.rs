@@ -137,7 +137,7 @@ fn execute_in<const D: usize>(
     let u = &solved.system.u;
     let gradient = if plan.runs(Stage::Gradient) {
         progress.stage(Stage::Gradient);
-        Some(plan.method.params.build().gradient(&problem, u)?)
+        Some(plan.method.params.build().gradient_of(&problem, &solved.system)?)
     } else {
         None
     };
@@ -148,12 +148,12 @@ fn execute_in<const D: usize>(
     let diagnosis = plan
         .runs(Stage::Diagnosis)
         .then(|| diagnose_nodes(&problem, &solved.discretization, plan.method.params.order()));
-    let probes = measure::probes(scene, &solved)?;
+    let probes = measure::probes(scene, plan, &solved)?;
     seconds.post = post.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
     let before = Instant::now();
     let estimate = if plan.runs(Stage::Estimate) {
-        estimate::against_coarser(whole, plan, &solved)?
+        estimate::estimate(whole, plan, &solved)?
     } else {
         Estimate { l2: None, why_not: Some("not asked for".to_owned()) }
     };

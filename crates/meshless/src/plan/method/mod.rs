@@ -84,6 +84,14 @@ impl MethodParams {
         }
     }
 
+    /// The same method at a higher order on the same stencils, by which it can be judged; `None` where there is none.
+    pub(crate) fn finer(&self, dimension: usize) -> Option<Self> {
+        match self {
+            Self::Sharp(params) => sharp::finer(params, dimension).map(Self::Sharp),
+            _ => None,
+        }
+    }
+
     /// Order at which the error in u falls where something jumps at an interface.
     pub fn interface_order(&self) -> usize {
         match self {

@@ -12,6 +12,18 @@ pub(super) fn params(scene: &Scene) -> SharpParams {
     SharpParams { order: scene.method.order.unwrap_or(chosen.order), ..chosen }
 }
 
+/// Nodes of a stencil for each harmonic polynomial of a part, in three dimensions.
+const NODES_PER_POLYNOMIAL: f64 = 1.4;
+
+/// Two orders more. In three dimensions the stencils of the higher order would take five times as long: there they are
+/// as large as those of the lower one, or as its polynomials need at least.
+pub(super) fn finer(params: &SharpParams, dimension: usize) -> Option<SharpParams> {
+    let order = params.order + 2;
+    let least = (NODES_PER_POLYNOMIAL * ((order + 1) * (order + 1)) as f64).ceil() as usize;
+    let nodes = (dimension == 3).then(|| params.stencil_nodes(dimension).max(least));
+    (order <= MAX_ORDER[dimension - 1]).then_some(SharpParams { order, nodes, ..*params })
+}
+
 /// Orders that a dimension does not have, and scenes that change: the rows are residuals of interpolation, which have
 /// no mass of a node in front of du/dt.
 pub(super) fn check(scene: &Scene) -> Result<(), Error> {

@@ -1,0 +1,106 @@
+//! Claims.
+
+use super::cases::{self, Ladder};
+use crate::verify::claims::Claims;
+use crate::verify::options::Effort;
+use crate::verify::order;
+use crate::verify::row::Row;
+use crate::verify::runner::Runner;
+use crate::verify::study::{Key, Outcome, find};
+
+/// An error of a run.
+pub(super) type Error = fn(&Row) -> Option<f64>;
+
+/// Least orders of u and of its gradient, by the order of the polynomials.
+const ORDERS: [(usize, [f64; 2]); 2] = [(4, [3.7, 3.3]), (6, [5.3, 4.8])];
+
+/// Where three rungs are all there is, the coarsest of which resolves the interface by a few nodes.
+const QUICK_MARGIN: f64 = 0.4;
+
+/// Errors that only round-off is left of: no order is measured on them.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Largest error over the smallest, over contrasts from 1e2 to 1e10.
+const SPREAD: f64 = 3.0;
+
+/// The rungs of a ladder, as spacing and error.
+pub(super) fn rungs(runner: &Runner<'_>, key: &Key, error: Error) -> Vec<(f64, f64)> {
+    let mut found: Vec<&Outcome> = runner
+        .outcomes
+        .iter()
+        .filter(|o| Key { level: o.key.level, ..*key } == o.key && error(&o.row).is_some())
+        .collect();
+    found.sort_by_key(|o| o.key.level);
+    found.iter().map(|o| (o.row.spacing, error(&o.row).unwrap_or(f64::NAN))).collect()
+}
+
+/// Orders of u and of its gradient over all seeds and contrasts at once, and the spread over the contrasts.
+pub(super) fn ladder(runner: &Runner<'_>, ladder: &Ladder, claims: &mut Claims) {
+    let errors: [(&str, Error); 2] = [("u in L2", |r| r.err_l2), ("the gradient", |r| r.err_grad_linf)];
+    let margin = if runner.options.effort == Effort::Quick { QUICK_MARGIN } else { 0.0 };
+    for &variant in &ladder.variants {
+        let Some(p) = variant.order else { continue };
+        let Some((_, least)) = ORDERS.iter().find(|(order, _)| *order == p) else { continue };
+        for &jump in &ladder.contrasts {
+            for (which, (name, error)) in errors.into_iter().enumerate() {
+                let key = |&seed: &u64| Key { case: ladder.case, variant, jump, level: 0, seed };
+                let all: Vec<(f64, f64)> =
+                    ladder.seeds.iter().flat_map(|seed| rungs(runner, &key(seed), error)).collect();
+                let resolved: Vec<(f64, f64)> = all.iter().copied().filter(|(_, e)| *e > ROUND_OFF).collect();
+                if resolved.is_empty() && !all.is_empty() {
+                    let claim =
+                        format!("contrast {jump:e}, p = {p}: {name} is exact, largest error of all clouds");
+                    let largest = all.iter().map(|(_, e)| *e).reduce(f64::max);
+                    claims.at_most(ladder.case, claim, largest, ROUND_OFF);
+                    continue;
+                }
+                let (clouds, least) = if ladder.smooth {
+                    ("all clouds", least[which] - margin)
+                } else {
+                    ("coarse clouds in space", p as f64 - 1.5 - which as f64)
+                };
+                let claim = format!("contrast {jump:e}, p = {p}: order of {name}, {clouds}");
+                claims.at_least(ladder.case, claim, order::fit(&resolved), least);
+            }
+        }
+        if ladder.contrasts.len() > 1 && ladder.contrasts.iter().all(|&c| c >= 1e2) {
+            spread(runner, ladder, variant, claims);
+        }
+    }
+}
+
+fn spread(
+    runner: &Runner<'_>,
+    ladder: &Ladder,
+    variant: crate::verify::variant::Variant,
+    claims: &mut Claims,
+) {
+    let worst = ladder.levels.clone().filter_map(|level| {
+        let at = |&jump: &f64| {
+            let key = Key { case: ladder.case, variant, jump, level, seed: ladder.seeds[0] };
+            find(&runner.outcomes, &key)?.row.err_l2
+        };
+        let errors: Vec<f64> = ladder.contrasts.iter().map(at).collect::<Option<_>>()?;
+        let (low, high) = errors.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
+        Some(high / low)
+    });
+    let claim = format!("{}: largest error over the smallest, contrasts from 1e2 to 1e10", variant.label());
+    claims.at_most(ladder.case, claim, worst.reduce(f64::max), SPREAD);
+}
+
+/// Errors at given numbers of nodes.
+pub(super) fn single(runner: &Runner<'_>, effort: Effort, claims: &mut Claims) {
+    for single in cases::singles(effort) {
+        let key = cases::distinct(single.key, single.what);
+        if runner.options.wants(key.case, "sharp") {
+            let measured = find(&runner.outcomes, &key).and_then(|o| o.row.err_l2);
+            claims.at_most(key.case, format!("{}: relative L2 error", single.what), measured, single.l2);
+        }
+    }
+    let largest =
+        find(&runner.outcomes, &Key { case: "disc", variant: super::sharp(6), jump: 1e2, level: 3, seed: 1 });
+    if effort > Effort::Quick && runner.options.wants("disc", "sharp") {
+        let measured = largest.and_then(|o| o.row.err_linf);
+        claims.at_most("disc", "about 6000 nodes, order 6: relative maximum error", measured, 1e-9);
+    }
+}

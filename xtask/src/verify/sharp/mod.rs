@@ -1,0 +1,111 @@
+//! Suite `sharp`: orders, errors at given numbers of nodes, contrasts, and what accuracy costs with every method.
+
+mod cases;
+mod checks;
+mod sections;
+
+use super::claims::Claims;
+use super::jobs::Job;
+use super::options::{Effort, Options};
+use super::runner::{Extra, Runner};
+use super::study::{Key, Study};
+use super::variant::Variant;
+use cases::{Ladder, ladders};
+
+const SUITE: &str = "sharp";
+
+pub(super) const ABOUT: &str = "The sharp method: orders of u and of its gradient on irregular clouds that know nothing of the interface, errors at \
+    given numbers of nodes, the spread over contrasts, and the error against seconds of all methods on the same clouds.";
+
+pub(super) const CASES: [&str; 15] = [
+    "interior",
+    "mode-3",
+    "disc",
+    "rings",
+    "ellipse",
+    "star",
+    "pair",
+    "quadrants",
+    "curved",
+    "cylinder",
+    "flat",
+    "corner-90",
+    "corner-45",
+    "ball",
+    "torus",
+];
+
+/// The method at an order, solved directly.
+const fn sharp(order: usize) -> Variant {
+    Variant { order: Some(order), support: None, ..Variant::plain("sharp").directly() }
+}
+
+/// The same by GMRES, which is faster in three dimensions.
+const fn sharp_in_space(order: usize) -> Variant {
+    Variant { solver: Some("gmres"), ..sharp(order) }
+}
+
+/// What it is compared with.
+const OTHERS: [Variant; 3] = [
+    Variant::plain("gfdm-hybrid").directly(),
+    Variant { support: None, ..Variant::plain("particle-difference").directly() },
+    Variant { support: None, ..Variant::plain("immersed-interface").directly() },
+];
+
+/// Node spacing of a rung.
+fn spacing(level: usize) -> f64 {
+    0.2 * 0.5_f64.powi(level as i32)
+}
+
+pub(super) fn run(options: &Options) -> Study {
+    let mut runner = Runner::new(SUITE, options);
+    let mut claims = Claims::new(SUITE, options.is_filtered());
+    let effort = options.effort;
+    let ladders = ladders(effort);
+    let mut jobs: Vec<Job> = ladders.iter().flat_map(ladder_jobs).collect();
+    jobs.extend(cases::single_runs(effort));
+    runner.run_all(jobs);
+    for ladder in &ladders {
+        if options.wants(ladder.case, "sharp") {
+            checks::ladder(&runner, ladder, &mut claims);
+        }
+    }
+    checks::single(&runner, effort, &mut claims);
+    runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
+    claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
+    let sections = sections::sections(&runner, &ladders);
+    Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
+}
+
+fn ladder_jobs(ladder: &Ladder) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for &variant in &ladder.variants {
+        for &jump in &ladder.contrasts {
+            for &seed in &ladder.seeds {
+                let key = |level| Key { case: ladder.case, variant, jump, level, seed };
+                jobs.extend(ladder.levels.clone().map(|level| Job {
+                    problem: (ladder.scene)(jump, spacing(level), seed),
+                    key: key(level),
+                    extra: Extra::default(),
+                }));
+            }
+        }
+    }
+    // The others on the first contrast and cloud only: for the diagram of costs.
+    if ladder.compared {
+        for variant in OTHERS {
+            let (jump, seed) = (ladder.contrasts[0], ladder.seeds[0]);
+            jobs.extend(ladder.levels.clone().map(|level| Job {
+                problem: (ladder.scene)(jump, spacing(level), seed),
+                key: Key { case: ladder.case, variant, jump, level, seed },
+                extra: Extra::default(),
+            }));
+        }
+    }
+    jobs
+}
+
+/// Effort from which a run is worth its time.
+fn at_least(effort: Effort, least: Effort) -> bool {
+    effort >= least
+}
