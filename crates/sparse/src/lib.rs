@@ -53,7 +53,9 @@ pub use floating::{
     NeumannSolution, PreparedBordered, Split, clusters, pure_neumann,
 };
 pub use market::{MarketError, read_matrix_market, write_matrix_market};
-pub use multigrid::{CycleKind, HierarchyInfo, Multigrid, MultigridParams, SmootherKind};
+pub use multigrid::{
+    Coarsening, CycleKind, HierarchyInfo, Multigrid, MultigridParams, Restriction, SmootherKind, StrengthKind,
+};
 pub use precond::{IncompleteLu, Jacobi, Preconditioner, PreconditionerKind, ilu0, ilut};
 pub use solver::{
     AUTO_DIRECT_MAX, AUTO_RESTART, DEFAULT_TOLERANCE, LinearOperator, Prepared, SolveError, SolveInfo,

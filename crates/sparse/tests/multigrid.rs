@@ -4,8 +4,9 @@ mod common;
 
 use common::{Grid, distance, grid};
 use meshless_sparse::{
-    ChainLink, Csr, CycleKind, DifferenceMatrix, GroupUnknowns, MultigridParams, PreconditionerKind,
-    Prepared, SmootherKind, SolveError, SolveInfo, SolverKind, SolverParams, Split, solve,
+    ChainLink, Coarsening, Csr, CycleKind, DifferenceMatrix, GroupUnknowns, MultigridParams,
+    PreconditionerKind, Prepared, Restriction, SmootherKind, SolveError, SolveInfo, SolverKind, SolverParams,
+    Split, StrengthKind, solve,
 };
 
 const RADIUS: f64 = 0.3;
@@ -180,4 +181,51 @@ fn what_multigrid_does_not_get_along_with_is_solved_by_what_steps_in() {
     let params = SolverParams { kind: SolverKind::Multigrid, tolerance: 1e-11, ..SolverParams::default() };
     let (x, info) = solve(&a, &b, &params).unwrap();
     assert!(distance(&x, &exact) < 1e-8, "{}", info.name);
+}
+
+#[test]
+fn every_kind_of_coarsening_converges() {
+    let grid = disc(60, 1e-4);
+    let (a, b) = (grid.reduced.matrix.to_csr(), &grid.reduced.rhs);
+    let exact = solve(&a, b, &direct()).unwrap().0;
+    let base = MultigridParams { coarsest: 40, ..Default::default() };
+    let others = [
+        MultigridParams { coarsening: Coarsening::PairwiseAggregation, cycle: CycleKind::K, ..base },
+        MultigridParams { coarsening: Coarsening::RugeStuebenDirect, ..base },
+        MultigridParams { coarsening: Coarsening::RugeStuebenExtended, ..base },
+        MultigridParams { strength: StrengthKind::Evolution, ..base },
+        MultigridParams { restriction: Restriction::Own, ..base },
+        MultigridParams { smoother: SmootherKind::ColoredGaussSeidel, ..base },
+        MultigridParams { smoother: SmootherKind::Chebyshev, ..base },
+    ];
+    for levels in others {
+        let prepared = Prepared::new(&a, &with(levels)).unwrap();
+        let (x, info) = prepared.solve(b).unwrap();
+        assert!(info.iterations <= 25, "{levels:?}: {}", info.iterations);
+        assert!(distance(&x, &exact) < 1e-7, "{levels:?}");
+        let info = prepared.hierarchy().unwrap();
+        assert!(info.levels.len() > 1 && info.operator_complexity() < 3.0, "{levels:?}: {info:?}");
+    }
+}
+
+#[test]
+fn refreshed_levels_serve_a_matrix_with_other_values() {
+    let (before, after) = (disc(60, 1e-2), disc(60, 1e-3));
+    let (a, b) = (before.reduced.matrix.to_csr(), &after.reduced.rhs);
+    let changed = after.reduced.matrix.to_csr();
+    let exact = solve(&changed, b, &direct()).unwrap().0;
+    let chain = SolverParams { kind: SolverKind::Multigrid, ..multigrid() };
+    let jacobi = SolverParams { preconditioner: PreconditionerKind::Jacobi, ..multigrid() };
+    for params in [multigrid(), chain, jacobi, direct()] {
+        let mut prepared = Prepared::new(&a, &params).unwrap();
+        prepared.refresh(&changed).unwrap();
+        let solved = prepared.solve_all(&[b.clone(), vec![0.0; b.len()]]).unwrap();
+        assert!(distance(&solved[0].0, &exact) < 1e-7, "{}", solved[0].1.name);
+        assert!(solved[1].0.iter().all(|&x| x == 0.0));
+        if params.kind != SolverKind::Direct && params != jacobi {
+            let fresh = iterations(&changed, b, &multigrid()).iterations;
+            assert!(solved[0].1.iterations <= fresh + 3, "{} {fresh}", solved[0].1.iterations);
+        }
+        assert!(prepared.refresh(&disc(20, 1.0).reduced.matrix.to_csr()).is_err());
+    }
 }

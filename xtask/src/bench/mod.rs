@@ -13,6 +13,8 @@ use std::process::ExitCode;
 
 use table::Table;
 
+pub(crate) use solvers::systems;
+
 type Outcome = Result<Vec<Table>, Box<dyn Error + Send + Sync>>;
 
 /// A benchmark: its name, what it measures, and what runs it.

@@ -15,6 +15,7 @@ mod particle_difference;
 mod row;
 mod runner;
 mod sharp;
+mod solvers;
 mod study;
 mod suite;
 mod variant;

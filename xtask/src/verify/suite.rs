@@ -3,7 +3,7 @@
 use super::options::Options;
 use super::study::Study;
 use super::{cost, freespace, gfdm, hard, particle_difference, sharp};
-
+use super::{cost, freespace, gfdm, hard, particle_difference, sharp, solvers};
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
 pub(crate) struct Suite {
@@ -19,7 +19,7 @@ const fn later(name: &'static str) -> Suite {
     Suite { name, about: "", cases: &[], run: None }
 }
 
-static SUITES: [Suite; 7] = [
+static SUITES: [Suite; 8] = [
     Suite { name: "gfdm", about: gfdm::ABOUT, cases: &gfdm::CASES, run: Some(gfdm::run) },
     Suite {
         name: "particle-difference",
@@ -31,6 +31,7 @@ static SUITES: [Suite; 7] = [
     Suite { name: "freespace", about: freespace::ABOUT, cases: &freespace::CASES, run: Some(freespace::run) },
     Suite { name: "sharp", about: sharp::ABOUT, cases: &sharp::CASES, run: Some(sharp::run) },
     Suite { name: "hard", about: hard::ABOUT, cases: &hard::CASES, run: Some(hard::run) },
+    Suite { name: "solvers", about: solvers::ABOUT, cases: &solvers::CASES, run: Some(solvers::run) },
     Suite { name: "cost", about: cost::ABOUT, cases: &cost::CASES, run: Some(cost::run) },
 ];
 

@@ -58,7 +58,7 @@ fn stronger(best: Option<(usize, f64)>, next: (usize, f64)) -> Option<(usize, f6
 
 /// Gives nodes without strong neighbours to the aggregate of the largest entry of their row that has the right sign, from
 /// the aggregates outwards; where no such entry leads to an aggregate, they are aggregates of their own.
-fn adopt(a: &Csr, graph: &Graph, of: &mut [u32], count: &mut u32) {
+pub(crate) fn adopt(a: &Csr, graph: &Graph, of: &mut [u32], count: &mut u32) {
     let mut left: Vec<usize> = (0..of.len()).filter(|&i| of[i] == NONE && !graph.settled[i]).collect();
     while !left.is_empty() {
         let found: Vec<(usize, u32)> = left.iter().filter_map(|&i| Some((i, nearest(a, of, i)?))).collect();

@@ -18,6 +18,12 @@ pub(crate) struct Coarse {
 }
 
 impl Coarse {
+    /// What stands here until there is a coarsest level.
+    pub(crate) fn trivial() -> Result<Self, SolveError> {
+        let (scaled, factors) = Factors::new(&Csr::identity(1))?;
+        Ok(Self { scaled, factors })
+    }
+
     /// Factorises the matrix. A connected part that has only the constant as its null space gets a multiple of the matrix
     /// of ones added, which makes it regular and changes nothing for right-hand sides that have a solution; any other
     /// singular matrix is shifted.

@@ -27,7 +27,7 @@ impl Multigrid {
         let (t, scratch) = scratch.split_at_mut(this.smoother.scratch_len(n));
         let (b_coarse, scratch) = scratch.split_at_mut(coarse);
         let (x_coarse, scratch) = scratch.split_at_mut(coarse);
-        this.smoother.first(&this.a, b, x);
+        this.smoother.first(&this.a, b, x, t);
         for _ in 1..self.params.sweeps {
             this.smoother.before(&this.a, b, x, t);
         }

@@ -2,10 +2,16 @@
 
 mod aggregation;
 mod blocks;
+mod chebyshev;
 mod coarse;
+mod colored;
 mod cycle;
+mod evolution;
 mod galerkin;
+mod pairwise;
+mod params;
 mod prolongation;
+mod ruge_stueben;
 mod smoother;
 mod strength;
 #[cfg(test)]
@@ -16,6 +22,9 @@ use crate::error::MatrixError;
 use crate::precond::Preconditioner;
 use crate::solver::SolveError;
 use coarse::Coarse;
+pub use params::{
+    Coarsening, CycleKind, HierarchyInfo, MultigridParams, Restriction, SmootherKind, StrengthKind,
+};
 use smoother::Smoother;
 use std::sync::Arc;
 
@@ -24,86 +33,6 @@ const MAX_LEVELS: usize = 25;
 
 /// A level that has more than this part of the unknowns of the one above is not worth having.
 const LEAST_COARSENING: f64 = 0.8;
-
-/// How often coarse levels are visited.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum CycleKind {
-    /// Once.
-    V,
-    /// Twice.
-    #[default]
-    W,
-    /// By two steps of a Krylov method (Notay and Vassilevski, Numer. Linear Algebra Appl. 15, 2008): a preconditioner
-    /// that is not linear, for flexible methods only.
-    K,
-}
-
-/// What removes the errors that coarse levels cannot see.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum SmootherKind {
-    /// Damped Jacobi.
-    Jacobi,
-    /// Gauss-Seidel within blocks of rows of a fixed size, Jacobi between them: forward before the coarse correction,
-    /// backward after it.
-    #[default]
-    GaussSeidel,
-    /// Incomplete factors on the pattern of the matrix.
-    Ilu0,
-}
-
-/// How to make and use levels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MultigridParams {
-    /// How often coarse levels are visited.
-    pub cycle: CycleKind,
-    /// The smoother.
-    pub smoother: SmootherKind,
-    /// Its sweeps before and after each coarse correction, at least 1.
-    pub sweeps: usize,
-    /// A bond is strong from this part of the strongest of its nodes on; between 0 and 1.
-    pub threshold: f64,
-    /// Unknowns up to which a level is solved directly, at least 1.
-    pub coarsest: usize,
-}
-
-impl Default for MultigridParams {
-    fn default() -> Self {
-        Self {
-            cycle: CycleKind::W,
-            smoother: SmootherKind::GaussSeidel,
-            sweeps: 2,
-            threshold: 0.25,
-            coarsest: 400,
-        }
-    }
-}
-
-/// The sizes of a hierarchy.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct HierarchyInfo {
-    /// Unknowns and entries of every level, the finest first.
-    pub levels: Vec<(usize, usize)>,
-    /// Bytes of everything that was set up, without the finest matrix, which belongs to the solver.
-    pub bytes: usize,
-}
-
-impl HierarchyInfo {
-    /// Entries of all levels over those of the finest one.
-    #[must_use]
-    pub fn operator_complexity(&self) -> f64 {
-        let entries: usize = self.levels.iter().map(|l| l.1).sum();
-        entries as f64 / self.levels.first().map_or(1, |l| l.1.max(1)) as f64
-    }
-
-    /// Unknowns of all levels over those of the finest one.
-    #[must_use]
-    pub fn grid_complexity(&self) -> f64 {
-        let unknowns: usize = self.levels.iter().map(|l| l.0).sum();
-        unknowns as f64 / self.levels.first().map_or(1, |l| l.0.max(1)) as f64
-    }
-}
 
 #[derive(Debug)]
 struct Level {
@@ -141,30 +70,58 @@ impl Multigrid {
             MatrixError::check_length("weights of rows", weights.len(), matrix.nrows())?;
             MatrixError::check_finite("weight", weights)?;
         }
-        let mut info = HierarchyInfo { levels: vec![(matrix.nrows(), matrix.nnz())], bytes: 0 };
-        let mut levels = Vec::new();
+        let mut multigrid = Self {
+            levels: Vec::new(),
+            coarse: Coarse::trivial()?,
+            params: *params,
+            info: HierarchyInfo::default(),
+        };
+        multigrid.info.levels.push((matrix.nrows(), matrix.nnz()));
         let mut a = matrix;
         let mut sums = galerkin::row_sums(&a);
-        while a.nrows() > params.coarsest && levels.len() + 1 < MAX_LEVELS {
-            let graph = strength::symmetric(&a, params.threshold);
-            let aggregates = aggregation::standard(&a, &graph);
-            if aggregates.count == 0 || aggregates.count as f64 > LEAST_COARSENING * a.nrows() as f64 {
-                break;
-            }
-            let p = prolongation::smoothed(&a, &graph, &aggregates);
-            drop(graph);
-            let weights = weights.filter(|_| levels.is_empty());
-            let r = restriction(&p, weights);
-            let (coarse, coarse_sums) = galerkin::product(&a, &sums, &p, &r);
-            coarse.require_finite()?;
-            let smoother = Smoother::new(params.smoother, &a)?;
-            info.levels.push((coarse.nrows(), coarse.nnz()));
-            info.bytes += coarse.bytes() + p.bytes() + r.bytes() + smoother.bytes();
-            levels.push(Level { a, p, r, smoother });
-            (a, sums) = (Arc::new(coarse), coarse_sums);
+        while a.nrows() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
+            let weights = weights.filter(|_| multigrid.levels.is_empty());
+            let Some((p, r)) = transfers(&a, weights, params)? else { break };
+            (a, sums) = multigrid.add_level(a, &sums, p, r)?;
         }
-        let coarse = Coarse::new(&a, &sums)?;
-        Ok(Self { levels, coarse, params: *params, info })
+        multigrid.coarse = Coarse::new(&a, &sums)?;
+        Ok(multigrid)
+    }
+
+    /// The same levels for a matrix of the same pattern with other values: prolongation and restriction stay, coarse matrices
+    /// and smoothers are computed anew. For matrices that change little, as those of time steps do.
+    ///
+    /// # Errors
+    /// A matrix of another size; those of [`Multigrid::new`].
+    pub fn refresh(&mut self, matrix: Arc<Csr>) -> Result<(), SolveError> {
+        matrix.require_square()?;
+        let n = self.info.levels.first().map_or(0, |l| l.0);
+        MatrixError::check_length("rows of the matrix", matrix.nrows(), n)?;
+        let old = std::mem::take(&mut self.levels);
+        self.info = HierarchyInfo { levels: vec![(matrix.nrows(), matrix.nnz())], bytes: 0 };
+        let mut a = matrix;
+        let mut sums = galerkin::row_sums(&a);
+        for level in old {
+            (a, sums) = self.add_level(a, &sums, level.p, level.r)?;
+        }
+        self.coarse = Coarse::new(&a, &sums)?;
+        Ok(())
+    }
+
+    fn add_level(
+        &mut self,
+        a: Arc<Csr>,
+        sums: &[f64],
+        p: Csr,
+        r: Csr,
+    ) -> Result<(Arc<Csr>, Vec<f64>), SolveError> {
+        let (coarse, sums) = galerkin::product(&a, sums, &p, &r);
+        coarse.require_finite()?;
+        let smoother = Smoother::new(self.params.smoother, &a)?;
+        self.info.levels.push((coarse.nrows(), coarse.nnz()));
+        self.info.bytes += coarse.bytes() + p.bytes() + r.bytes() + smoother.bytes();
+        self.levels.push(Level { a, p, r, smoother });
+        Ok((Arc::new(coarse), sums))
     }
 
     /// The sizes of the levels.
@@ -174,28 +131,62 @@ impl Multigrid {
     }
 }
 
+/// Prolongation and restriction to the next level; `None` where there is none that is worth having.
+fn transfers(
+    a: &Csr,
+    weights: Option<&[f64]>,
+    params: &MultigridParams,
+) -> Result<Option<(Csr, Csr)>, SolveError> {
+    let symmetric = strength::symmetric(a, params.threshold);
+    let graph = match params.strength {
+        StrengthKind::Symmetric => symmetric,
+        StrengthKind::Evolution => evolution::evolution(a, &symmetric),
+    };
+    let worth = |count: usize| count > 0 && count as f64 <= LEAST_COARSENING * a.nrows() as f64;
+    let p = match params.coarsening {
+        Coarsening::SmoothedAggregation => {
+            let aggregates = aggregation::standard(a, &graph);
+            if !worth(aggregates.count) {
+                return Ok(None);
+            }
+            let p = prolongation::smoothed(a, &graph, &aggregates);
+            if params.restriction == Restriction::Own {
+                let balances = match weights {
+                    Some(weights) => a.row_scaled(weights)?,
+                    None => a.clone(),
+                };
+                let left = prolongation::smoothed(&balances.transpose(), &graph, &aggregates);
+                return Ok(Some((p, restriction(&left, weights))));
+            }
+            p
+        }
+        Coarsening::PairwiseAggregation => {
+            let aggregates = pairwise::pairwise(a, &graph);
+            if !worth(aggregates.count) {
+                return Ok(None);
+            }
+            prolongation::tentative(&aggregates)
+        }
+        Coarsening::RugeStuebenDirect | Coarsening::RugeStuebenExtended => {
+            let dependence = ruge_stueben::dependence(a, params.threshold, &graph);
+            let (number, count) = ruge_stueben::splitting(&dependence);
+            if !worth(count) {
+                return Ok(None);
+            }
+            let extended = params.coarsening == Coarsening::RugeStuebenExtended;
+            ruge_stueben::interpolation(a, &dependence, &number, count, extended)
+        }
+    };
+    let r = restriction(&p, weights);
+    Ok(Some((p, r)))
+}
+
 /// The transpose of the prolongation, with its columns weighted.
 fn restriction(p: &Csr, weights: Option<&[f64]>) -> Csr {
     let r = p.transpose();
     let Some(weights) = weights else { return r };
     let values = r.indices().iter().zip(r.values()).map(|(&i, v)| weights[i as usize] * v).collect();
     Csr::from_trusted(r.ncols(), r.offsets().to_vec(), r.indices().to_vec(), values)
-}
-
-impl MultigridParams {
-    pub(crate) fn check(&self) -> Result<(), SolveError> {
-        let bad = |what, value, expected| Err(SolveError::BadParameter { what, value, expected });
-        if !(0.0..1.0).contains(&self.threshold) {
-            return bad("the threshold of strength", self.threshold, "it must lie in [0, 1)");
-        }
-        if self.sweeps == 0 {
-            return bad("the number of sweeps", 0.0, "it must be at least 1");
-        }
-        if self.coarsest == 0 {
-            return bad("the size of the coarsest level", 0.0, "it must be at least 1");
-        }
-        Ok(())
-    }
 }
 
 impl Preconditioner for Multigrid {
@@ -213,6 +204,11 @@ impl Preconditioner for Multigrid {
 
     fn is_linear(&self) -> bool {
         self.params.cycle != CycleKind::K
+    }
+
+    fn refresh(&mut self, matrix: &Arc<Csr>) -> Result<bool, SolveError> {
+        Self::refresh(self, Arc::clone(matrix))?;
+        Ok(true)
     }
 
     fn hierarchy(&self) -> Option<&HierarchyInfo> {

@@ -8,6 +8,15 @@ use crate::csr::{Csr, computed_rows};
 /// Brezina 1996), for which Gershgorin's bound on filtered rows is 2.
 const DAMPING: f64 = 2.0 / 3.0;
 
+/// The prolongation that is constant on aggregates.
+pub(crate) fn tentative(aggregates: &Aggregates) -> Csr {
+    computed_rows(aggregates.of.len(), aggregates.count, |i, places, block| {
+        if aggregates.of[i] != NONE {
+            block.add(places, aggregates.of[i], 1.0);
+        }
+    })
+}
+
 /// The prolongation after one damped Jacobi step with the filtered matrix, in difference form:
 /// `P_i = T_i - omega / d_i sum_j a_ij (T_j - T_i)` over strong neighbours `j`, with `d_i = -sum_j a_ij`. So its rows add up
 /// to 1 whatever is filtered out, and constants are reproduced exactly.

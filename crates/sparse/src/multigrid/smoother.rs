@@ -2,6 +2,8 @@
 
 use super::SmootherKind;
 use super::blocks::BlockIlu;
+use super::chebyshev::Chebyshev;
+use super::colored::Colored;
 use crate::csr::{Csr, for_each_row};
 use crate::error::MatrixError;
 use crate::vector::axpy;
@@ -20,6 +22,8 @@ pub(crate) enum Smoother {
     Jacobi(Vec<f64>),
     /// `1 / a_ii`
     GaussSeidel(Vec<f64>),
+    Colored(Colored),
+    Chebyshev(Chebyshev),
     Ilu(BlockIlu),
 }
 
@@ -32,6 +36,8 @@ impl Smoother {
         Ok(match kind {
             SmootherKind::Jacobi => Self::Jacobi(inverse(JACOBI_DAMPING)),
             SmootherKind::GaussSeidel => Self::GaussSeidel(inverse(1.0)),
+            SmootherKind::ColoredGaussSeidel => Self::Colored(Colored::new(a, inverse(1.0))),
+            SmootherKind::Chebyshev => Self::Chebyshev(Chebyshev::new(a, inverse(1.0))),
             SmootherKind::Ilu0 => Self::Ilu(BlockIlu::new(a)?),
         })
     }
@@ -40,28 +46,35 @@ impl Smoother {
     pub(crate) fn bytes(&self) -> usize {
         match self {
             Self::Jacobi(d) | Self::GaussSeidel(d) => size_of_val(&**d),
+            Self::Colored(colored) => colored.bytes(),
+            Self::Chebyshev(chebyshev) => chebyshev.bytes(),
             Self::Ilu(lu) => lu.bytes(),
         }
     }
 
-    /// A sweep from `x = 0`.
-    pub(crate) fn first(&self, a: &Csr, b: &[f64], x: &mut [f64]) {
+    /// A sweep from `x = 0`. `t` is scratch.
+    pub(crate) fn first(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64]) {
         match self {
             Self::Jacobi(inverse) => for_each_row(x, |i, x| *x = inverse[i] * b[i]),
             Self::GaussSeidel(inverse) => forward_from_zero(a, inverse, b, x),
+            Self::Colored(_) | Self::Chebyshev(_) => {
+                x.fill(0.0);
+                self.before(a, b, x, t);
+            }
             Self::Ilu(lu) => lu.apply(b, x),
         }
     }
 
     /// Elements of scratch that a sweep over `n` rows needs.
     pub(crate) fn scratch_len(&self, n: usize) -> usize {
-        if matches!(self, Self::Ilu(_)) { 2 * n } else { n }
+        if matches!(self, Self::Ilu(_) | Self::Chebyshev(_)) { 2 * n } else { n }
     }
 
     /// A further sweep before the coarse correction. `t` is scratch.
     pub(crate) fn before(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64]) {
         match self {
             Self::GaussSeidel(inverse) => sweep::<false>(a, inverse, b, x, t),
+            Self::Colored(colored) => colored.sweep(a, b, x, t, false),
             _ => self.after(a, b, x, t),
         }
     }
@@ -75,6 +88,8 @@ impl Smoother {
                 for_each_row(x, |i, x| *x += inverse[i] * t[i]);
             }
             Self::GaussSeidel(inverse) => sweep::<true>(a, inverse, b, x, t),
+            Self::Colored(colored) => colored.sweep(a, b, x, t, true),
+            Self::Chebyshev(chebyshev) => chebyshev.sweep(a, b, x, t),
             Self::Ilu(lu) => {
                 let (r, z) = t.split_at_mut(x.len());
                 a.residual(x, b, r);

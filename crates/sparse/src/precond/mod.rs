@@ -37,6 +37,14 @@ pub trait Preconditioner: Debug + Send + Sync {
     fn is_linear(&self) -> bool {
         true
     }
+    /// Adapts to a matrix of the same pattern with other values, keeping what may be kept. False where there is nothing to
+    /// keep, and the preconditioner must be built anew.
+    ///
+    /// # Errors
+    /// Those of building it.
+    fn refresh(&mut self, _matrix: &Arc<Csr>) -> Result<bool, SolveError> {
+        Ok(false)
+    }
     /// The levels, of multigrid.
     fn hierarchy(&self) -> Option<&HierarchyInfo> {
         None

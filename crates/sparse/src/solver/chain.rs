@@ -40,6 +40,16 @@ impl Chain {
         }
     }
 
+    /// Other values in the same pattern: the levels stay, and multigrid gets another chance.
+    pub(crate) fn refresh(&mut self, matrix: &Arc<Csr>) -> Result<(), SolveError> {
+        let Some(multigrid) = &mut self.multigrid else {
+            self.substitute = OnceLock::from(ilu0(matrix)?);
+            return Ok(());
+        };
+        self.substitute = OnceLock::new();
+        multigrid.refresh(Arc::clone(matrix))
+    }
+
     pub(crate) fn hierarchy(&self) -> Option<&HierarchyInfo> {
         self.multigrid.as_ref().map(Multigrid::info)
     }

@@ -96,6 +96,44 @@ impl Prepared {
         }
     }
 
+    /// Prepares for a matrix of the same pattern with other values. Multigrid keeps its levels and computes their matrices
+    /// anew, which is a fraction of its set-up; all else is built again.
+    ///
+    /// # Errors
+    /// Those of [`Prepared::new`]. What was prepared before is lost then.
+    pub fn refresh(&mut self, matrix: &Csr) -> Result<(), SolveError> {
+        MatrixError::check_length("rows of the matrix", matrix.nrows(), self.n())?;
+        let kept = match &mut self.engine {
+            Engine::Direct(_) => false,
+            Engine::Krylov(Method::Cg, _) => false,
+            Engine::Krylov(_, m) => {
+                let scaled = self.scaled.renewed(matrix)?;
+                let kept = m.refresh(&scaled.matrix)?;
+                if kept {
+                    self.scaled = scaled;
+                }
+                kept
+            }
+            Engine::Multigrid(chain) => {
+                self.scaled = self.scaled.renewed(matrix)?;
+                chain.refresh(&self.scaled.matrix)?;
+                true
+            }
+        };
+        if !kept {
+            *self = Self::new(matrix, &self.params)?;
+        }
+        Ok(())
+    }
+
+    /// Solves for several right-hand sides, one after the other.
+    ///
+    /// # Errors
+    /// Those of [`Prepared::solve`], for the first that fails.
+    pub fn solve_all(&self, rhs: &[Vec<f64>]) -> Result<Vec<(Vec<f64>, SolveInfo)>, SolveError> {
+        rhs.iter().map(|b| self.solve(b)).collect()
+    }
+
     /// The levels, where the preconditioner is multigrid.
     #[must_use]
     pub fn hierarchy(&self) -> Option<&HierarchyInfo> {

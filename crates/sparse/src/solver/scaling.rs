@@ -34,6 +34,18 @@ impl Scaled {
         Ok(Self { matrix: Arc::new(matrix.row_scaled(&rows)?), rows, columns: None })
     }
 
+    /// Another matrix with its rows scaled by the same factors, so that sums over rows keep their meaning.
+    pub(crate) fn renewed(&self, matrix: &Csr) -> Result<Self, SolveError> {
+        let scaled = matrix.row_scaled(&self.rows)?;
+        for row in 0..scaled.nrows() {
+            let largest = scaled.row(row).1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+            if largest == 0.0 {
+                return Err(SolveError::EmptyRow { row });
+            }
+        }
+        Ok(Self { matrix: Arc::new(scaled), rows: self.rows.clone(), columns: None })
+    }
+
     /// Rows and columns with the same factors and a diagonal between 1 and 4, which keeps a symmetric matrix so.
     /// None unless all of the diagonal is positive.
     pub(crate) fn symmetric(matrix: &Csr) -> Result<Option<Self>, SolveError> {

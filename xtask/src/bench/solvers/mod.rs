@@ -1,6 +1,6 @@
 //! Multigrid on every kind of matrix: iterations, complexity, set-up, memory.
 
-mod systems;
+pub(crate) mod systems;
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ const RESTART: usize = 60;
 /// Products after which a row of the table says that there are too many.
 const PATIENCE: usize = 120;
 
-/// More than a unit of work: the table has a row for every matrix, and is printed as it grows.
+/// Minutes of work: every row is reported as soon as it is there.
 pub(super) fn run() -> Outcome {
     let head = [
         "",
@@ -47,7 +47,9 @@ pub(super) fn run() -> Outcome {
         for unknowns in UNKNOWNS {
             for contrast in CONTRASTS {
                 if kind != Kind::Ghosts || unknowns <= GHOSTS_MAX {
-                    table.row(kind.name(), figures(kind, unknowns, contrast)?);
+                    let figures = figures(kind, unknowns, contrast)?;
+                    eprintln!("{}: {}", kind.name(), figures.join(", "));
+                    table.row(kind.name(), figures);
                 }
             }
         }

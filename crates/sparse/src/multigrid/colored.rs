@@ -1,0 +1,61 @@
+//! Gauss-Seidel by colours.
+
+use crate::csr::Csr;
+use rayon::prelude::*;
+
+/// Rows that one task works through.
+const ROWS_PER_TASK: usize = 1024;
+
+/// Rows by colour; rows of one colour have no entries in each other's columns.
+#[derive(Debug)]
+pub(crate) struct Colored {
+    colors: Vec<Vec<u32>>,
+    inverse: Vec<f64>,
+}
+
+impl Colored {
+    /// Colours greedily, in the order of the rows.
+    pub(crate) fn new(a: &Csr, inverse: Vec<f64>) -> Self {
+        let n = a.nrows();
+        let reverse = a.transpose();
+        let mut color = vec![usize::MAX; n];
+        let mut colors: Vec<Vec<u32>> = Vec::new();
+        let mut taken: Vec<usize> = Vec::new();
+        for i in 0..n {
+            taken.clear();
+            let both = a.row(i).0.iter().chain(reverse.row(i).0);
+            taken.extend(both.map(|&j| color[j as usize]).filter(|&c| c != usize::MAX));
+            taken.sort_unstable();
+            taken.dedup();
+            // The first number that is missing.
+            let free = taken.iter().zip(0..).find(|(c, k)| **c != *k).map_or(taken.len(), |(_, k)| k);
+            color[i] = free;
+            if free == colors.len() {
+                colors.push(Vec::new());
+            }
+            colors[free].push(i as u32);
+        }
+        Self { colors, inverse }
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.inverse) + self.colors.iter().map(|c| size_of_val(&**c)).sum::<usize>()
+    }
+
+    pub(crate) fn sweep(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64], backward: bool) {
+        for k in 0..self.colors.len() {
+            let rows = &self.colors[if backward { self.colors.len() - 1 - k } else { k }];
+            let new = &mut t[..rows.len()];
+            let old = &*x;
+            new.par_chunks_mut(ROWS_PER_TASK).zip(rows.par_chunks(ROWS_PER_TASK)).for_each(|(new, rows)| {
+                for (new, &i) in new.iter_mut().zip(rows) {
+                    let i = i as usize;
+                    let (columns, values) = a.row(i);
+                    let r = columns.iter().zip(values).fold(b[i], |r, (&j, v)| r - v * old[j as usize]);
+                    *new = old[i] + r * self.inverse[i];
+                }
+            });
+            rows.iter().zip(&*new).for_each(|(&i, &new)| x[i as usize] = new);
+        }
+    }
+}
