@@ -117,3 +117,25 @@ fn the_prediction_of_the_unknowns_is_close() {
         assert!((0.85..1.18).contains(&ratio), "{dimension}-D: {ratio}");
     }
 }
+
+#[test]
+fn the_solver_fits_size_and_matrix() {
+    let solver = |small: Small, method: &str| {
+        let text = small.text() + "\n[method]\n" + method + "\n";
+        let scene = Scene::parse(&text, "small.toml").expect("the scene can be solved");
+        Plan::new(&scene).expect("the scene can be solved").solver_name()
+    };
+    let disc = |spacing| Small { inside: Some("1e6"), spacing, ..Small::default() };
+    let ball = |spacing| Small { dimension: 3, ..disc(spacing) };
+    let (multigrid, krylov) = ("gmres(60) + multigrid", "bicgstab(2) + ILU(0)");
+    assert_eq!(solver(disc("0.01"), "name = \"auto\""), "direct");
+    assert_eq!(solver(disc("0.01"), "solver = \"multigrid\""), multigrid);
+    assert_eq!(solver(disc("0.004"), "name = \"auto\""), multigrid);
+    assert_eq!(solver(ball("0.05"), "name = \"auto\""), multigrid);
+    // Where stencils that are not conservative meet a jump, and where they do not.
+    assert_eq!(solver(disc("0.004"), "name = \"gfdm-classical\""), "direct");
+    assert_eq!(solver(ball("0.05"), "name = \"immersed-interface\""), krylov);
+    let smooth = Small { dimension: 3, spacing: "0.05", ..Small::default() };
+    assert_eq!(solver(smooth, "name = \"gfdm-classical\""), multigrid);
+    assert_eq!(solver(ball("0.05"), "solver = \"bicgstab\""), krylov);
+}

@@ -14,6 +14,9 @@ const SUPPORT: [f64; 3] = [3.1, 2.9, 2.2];
 /// Unknowns up to which the direct solver is faster than multigrid, by dimension; see `docs/multigrid.md`.
 const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 30_000.0, 1_500.0];
 
+/// The same where multigrid does not serve. In the plane it is memory that ends it, about 4 GB.
+const DIRECT_LIMIT_WITHOUT_MULTIGRID: [f64; 3] = [f64::INFINITY, 250_000.0, 1_500.0];
+
 /// Relative true residual at which the Krylov solver stops.
 const TOLERANCE: f64 = 1e-11;
 
@@ -54,13 +57,24 @@ fn knows_slits(name: MethodName) -> bool {
     matches!(name, MethodName::Auto | MethodName::ParticleDifference)
 }
 
-pub(super) fn solver(scene: &Scene, unknowns: f64) -> SolverParams {
-    let direct = unknowns <= DIRECT_LIMIT[scene.dimension - 1];
+/// Methods whose matrices multigrid does not get along with where the diffusivity jumps: stencils that are not conservative
+/// make the equations of a floating region all but contradict each other.
+fn outpaces_multigrid(name: MethodName, survey: &Survey) -> bool {
+    let named =
+        matches!(name, MethodName::GfdmClassical | MethodName::GfdmPositive | MethodName::ImmersedInterface);
+    named && survey.contrast > FLOATING_CONTRAST
+}
+
+pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknowns: f64) -> SolverParams {
+    let outpaced = outpaces_multigrid(method, survey);
+    let limits = if outpaced { DIRECT_LIMIT_WITHOUT_MULTIGRID } else { DIRECT_LIMIT };
+    let direct = unknowns <= limits[scene.dimension - 1];
     let kind = match scene.method.solver {
         SolverName::Direct => SolverKind::Direct,
         SolverName::BiCgStab => SolverKind::BiCgStab { l: 2 },
         SolverName::Gmres => SolverKind::Gmres { restart: 60 },
         SolverName::Auto if direct => SolverKind::Direct,
+        SolverName::Auto if outpaced => SolverKind::BiCgStab { l: 2 },
         SolverName::Auto | SolverName::Multigrid => SolverKind::Multigrid,
     };
     SolverParams {

@@ -112,7 +112,7 @@ impl Plan {
         let survey = effects::Survey::of(scene)?;
         let method = choose::method_plan(scene, &survey)?;
         let predicted = predict::predict(scene, &survey, &method)?;
-        let solver = choose::solver(scene, predicted.unknowns);
+        let solver = choose::solver(scene, &survey, method.name, predicted.unknowns);
         let (stages, skipped) = choose::stages(scene, &survey, &method);
         Ok(Self {
             dimension: scene.dimension,
