@@ -2,8 +2,8 @@
 
 use super::options::Options;
 use super::study::Study;
-use super::{cost, freespace, gfdm, hard, particle_difference, sharp};
 use super::{cost, freespace, gfdm, hard, particle_difference, sharp, solvers};
+
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
 pub(crate) struct Suite {
