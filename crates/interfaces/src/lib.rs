@@ -59,17 +59,19 @@ mod sample;
 pub mod sharp;
 mod slit;
 mod support_values;
+mod surface_field;
 mod system;
 
 pub use adjacency::adjacent_pairs;
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
 pub use error::MethodError;
 pub use field::{Field, ScalarField};
-pub use method::{Counts, Discretization, Method, RowKind, SplitRows};
+pub use method::{Counts, Discretization, InterfacePoint, Method, RowKind, SplitRows};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};
 pub use slit::{SlitCondition, SlitInterface};
+pub use surface_field::SurfaceField;
 pub use system::{
     LinearSystem, PreparedSystem, SplitValues, SystemParams, SystemSolution, linear_system, solve,
 };

@@ -41,7 +41,7 @@ pub trait Method<const D: usize>: Sync {
 /// A linear system over the nodes, in difference form.
 #[derive(Debug, Clone)]
 pub struct Discretization {
-    /// Row i reads `sum_j a_ij (u_j - u_i) + r_i u_i = b_i`. Rows of nodes whose value is prescribed read
+    /// Rows of the nodes and, where there are any, of further unknowns. Row i reads `sum_j a_ij (u_j - u_i) + r_i u_i = b_i`. Rows of nodes whose value is prescribed read
     /// `u_i = value`: the shared layer eliminates them.
     pub rows: DifferenceMatrix,
     /// Right-hand side b.
@@ -57,6 +57,20 @@ pub struct Discretization {
     pub counts: Counts,
     /// Wall-clock seconds spent on stencils and cells, before assembly.
     pub stencil_seconds: f64,
+    /// Unknowns beside the values of the nodes: jumps of the slope at points of interfaces. Their rows and right-hand
+    /// sides come after those of the nodes.
+    pub interface_points: Vec<InterfacePoint>,
+}
+
+/// A point of an interface with an unknown of its own: the jump of the slope along the normal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InterfacePoint {
+    /// Its coordinates.
+    pub at: Vec<f64>,
+    /// Unit normal from the first region to the second.
+    pub normal: Vec<f64>,
+    /// The regions.
+    pub between: [u16; 2],
 }
 
 /// Rows that act on `w` and `C` of `u_i = sum_K sigma_K C_K + s_i w_i` in place of nodal values: methods whose stencils

@@ -26,7 +26,7 @@ impl Discretization {
             let (neighbors, values) = self.rows.row(i);
             let diagonal = self.rows.diagonal(i);
             let (mut sum, mut wrong) = (diagonal, 0.0_f64);
-            for (&j, &a) in neighbors.iter().zip(values) {
+            for (&j, &a) in neighbors.iter().zip(values).filter(|(j, _)| (**j as usize) < n) {
                 sum += a;
                 wrong = wrong.max(a);
                 if conservative(i) {

@@ -76,7 +76,8 @@ pub mod scene;
 
 pub use error::Error;
 pub use execute::{
-    Checkpoint, Frame, Picture, Progress, Silent, Solution, execute, execute_from, linear_system,
+    Checkpoint, Frame, Picture, Progress, Reproduction, Silent, Solution, execute, execute_from,
+    linear_system, reproduce,
 };
 pub use field::NodalField;
 pub use methods::{METHODS, MethodInfo};

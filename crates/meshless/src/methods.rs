@@ -51,6 +51,13 @@ pub const METHODS: &[MethodInfo] = &[
                  interface, jumps of u and of the flux; no maximum principle, not conservative",
     },
     MethodInfo {
+        name: "particle-difference-extended",
+        order: "1-2 / 2",
+        dimensions: "1, 2, 3",
+        limits: "the jump of the slope is an unknown at points of the interfaces: the former particle difference method, \
+                 to be compared with; steady, no slits",
+    },
+    MethodInfo {
         name: "immersed-interface",
         order: "2-3 / 2",
         dimensions: "1, 2, 3",

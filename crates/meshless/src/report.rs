@@ -73,6 +73,9 @@ pub struct Errors {
     pub linf: f64,
     /// Relative maximum norm of the gradient, each node in its own region.
     pub gradient_linf: f64,
+    /// Relative maximum norm of the jumps of the slope, for a method that has them as unknowns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jump_linf: Option<f64>,
     /// The same over each region alone, relative to the exact solution there.
     pub regions: BTreeMap<String, RegionErrors>,
 }

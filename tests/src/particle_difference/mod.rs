@@ -6,12 +6,14 @@
 mod ball;
 mod circle;
 mod cylinder;
+mod points;
 mod slit;
 mod wedges;
 
 pub use ball::ball;
 pub use circle::circle;
 pub use cylinder::cylinder;
+pub use points::{circle_by_points, cylinder_by_points};
 pub use slit::{SlitSetup, crack, slit};
 pub use wedges::{corner_45, corner_90};
 

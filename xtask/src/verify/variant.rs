@@ -105,6 +105,7 @@ impl Variant {
             "gfdm-positive" => "positivity-preserving hybrid".to_owned(),
             "gfdm-hybrid" => "conservative hybrid".to_owned(),
             "gfdm-conservative" => "conservative".to_owned(),
+            "particle-difference-extended" => "former particle difference".to_owned(),
             other => other.to_owned(),
         };
         if let Some(p) = self.order {

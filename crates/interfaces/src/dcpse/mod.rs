@@ -61,6 +61,7 @@ impl<const D: usize> Method<D> for ImmersedInterface {
                 volumes,
                 counts,
                 stencil_seconds,
+                interface_points: Vec::new(),
             },
         )
     }

@@ -5,6 +5,7 @@
 //! moving least squares; near one the local polynomial continues beyond it as the condition says, so that there are no
 //! further equations and no further unknowns. Here in any dimension and of any degree; see `docs/particle-difference.md`.
 
+mod extended;
 mod feet;
 mod fit;
 mod frame;
@@ -24,6 +25,7 @@ use rayon::prelude::*;
 use crate::method::{Counts, Discretization, Method, RowKind};
 use crate::support_values::SupportValues;
 use crate::{MethodError, Problem};
+pub use extended::ParticleDifferenceExtended;
 use feet::Feet;
 pub use params::{ParticleDifferenceParams, Wedge};
 use rows::{Row, StencilMaker};
@@ -154,5 +156,14 @@ fn assemble<const D: usize>(
         ..Counts::default()
     };
     let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();
-    Ok(Discretization { rows: matrix, rhs, constants: None, kinds, volumes, counts, stencil_seconds })
+    Ok(Discretization {
+        rows: matrix,
+        rhs,
+        constants: None,
+        kinds,
+        volumes,
+        counts,
+        stencil_seconds,
+        interface_points: Vec::new(),
+    })
 }

@@ -166,5 +166,14 @@ fn assemble<const D: usize>(
         ..Counts::default()
     };
     let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();
-    Ok(Discretization { rows: matrix, rhs, constants, kinds, volumes, counts, stencil_seconds })
+    Ok(Discretization {
+        rows: matrix,
+        rhs,
+        constants,
+        kinds,
+        volumes,
+        counts,
+        stencil_seconds,
+        interface_points: Vec::new(),
+    })
 }

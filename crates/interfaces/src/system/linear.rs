@@ -35,8 +35,12 @@ pub fn linear_system<const D: usize>(
     if let Some(constants) = &discretization.constants {
         return Ok(LinearSystem::of(&given::bordered(problem, discretization, constants)?.0));
     }
-    let reduced = discretization.rows.eliminate(&problem.dirichlet(), &discretization.rhs)?;
-    let split = match params.split_floating {
+    let mut known = problem.dirichlet();
+    let nodes = known.len();
+    known.resize(discretization.rows.n(), None);
+    let reduced = discretization.rows.eliminate(&known, &discretization.rhs)?;
+    // As in `solve`: constants of floating regions are found from the nodes alone.
+    let split = match params.split_floating && known.len() == nodes {
         true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
         false => None,
     };

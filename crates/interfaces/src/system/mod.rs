@@ -37,6 +37,8 @@ impl Default for SystemParams {
 pub struct SystemSolution {
     /// One value a node; where nothing fixes the constant, their mean weighted by the volumes is zero.
     pub u: Vec<f64>,
+    /// Values of the further unknowns of a method, in the order of [`Discretization::interface_points`].
+    pub extra: Vec<f64>,
     /// What the solver says.
     pub info: SolveInfo,
     /// Constants of floating regions that were solved for beside the nodes.
@@ -71,21 +73,27 @@ pub fn solve<const D: usize>(
     if let Some(constants) = &discretization.constants {
         return given::solve(problem, discretization, constants, params);
     }
-    if !problem.is_anchored() && (0..rows.n()).all(|i| rows.row_sum(i) == 0.0) {
+    let unanchored = !problem.is_anchored() && (0..problem.cloud.len()).all(|i| rows.row_sum(i) == 0.0);
+    if unanchored && rows.n() > problem.cloud.len() {
+        let (method, what) = ("particle-difference-extended", "leave the constant of u undetermined");
+        return Err(MethodError::Unsupported { method, what, instead: "prescribe u somewhere" });
+    }
+    if unanchored {
         return solve_unanchored(problem, discretization, params);
     }
-    let known = problem.dirichlet();
+    let mut known = problem.dirichlet();
+    let nodes = known.len();
+    known.resize(rows.n(), None);
+    // Constants of floating regions are found from the nodes alone.
+    let split_floating = params.split_floating && rows.n() == nodes;
     let is_known: Vec<bool> = known.iter().map(Option::is_some).collect();
     let rhs: Vec<f64> = known.iter().zip(&discretization.rhs).map(|(g, &b)| g.unwrap_or(b)).collect();
-    let prepared = PreparedSystem::new(problem, rows.clone(), &is_known, params)?;
-    let (u, info) = prepared.solve(&rhs)?;
-    Ok(SystemSolution {
-        u,
-        info,
-        floating_constants: prepared.floating_constants(),
-        up_to_constant: false,
-        split: None,
-    })
+    let params = SystemParams { split_floating, ..*params };
+    let prepared = PreparedSystem::new(problem, rows.clone(), &is_known, &params)?;
+    let (mut u, info) = prepared.solve(&rhs)?;
+    let extra = u.split_off(nodes);
+    let floating_constants = prepared.floating_constants();
+    Ok(SystemSolution { u, extra, info, floating_constants, up_to_constant: false, split: None })
 }
 
 /// A pure Neumann problem: one node is pinned, and an extra unknown takes up what is not balanced.
@@ -110,7 +118,7 @@ fn solve_unanchored<const D: usize>(
     let floating_constants = split.extra();
     check_balance(discretization, solved.extra[floating_constants])?;
     center(&mut u, volumes);
-    Ok(SystemSolution { u, info, floating_constants, up_to_constant: true, split: None })
+    Ok(SystemSolution { u, extra: Vec::new(), info, floating_constants, up_to_constant: true, split: None })
 }
 
 /// Whether sources and fluxes balance: `lambda` times the volumes had to be added.

@@ -7,6 +7,7 @@ mod conservation;
 mod consistency;
 mod contrast;
 mod diagnosis;
+mod extended;
 mod fields;
 mod invariance;
 mod jumps;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use meshless_expr::Expr;
-use meshless_interfaces::{Field, InterfaceJump, Material, ScalarField};
+use meshless_interfaces::{Field, InterfaceJump, Material, ScalarField, SurfaceField};
 
 use crate::Error;
 use crate::execute::Exact;
-use crate::scene::{ExprField, Scene};
+use crate::scene::{ExprField, PointValues, Scene};
 
 /// An expression with its derivatives, which are formed once.
 struct ExprScalar<const D: usize> {
@@ -48,6 +48,20 @@ pub(crate) fn materials<const D: usize>(scene: &Scene) -> Vec<Material<D>> {
         .collect()
 }
 
+/// Values at points, linear in between.
+fn at_points<const D: usize>(given: &PointValues) -> Option<Field<D>> {
+    let points = given.points.iter().map(|p| std::array::from_fn(|k| p[k])).collect();
+    let field = match given.triangles.is_empty() {
+        true => SurfaceField::polygon(points, given.values.clone()),
+        false => {
+            let triangles = given.triangles.iter().map(|t| t.to_vec()).collect();
+            SurfaceField::new(points, given.values.clone(), triangles)
+        }
+    };
+    // The reader has checked numbers, lengths and indices.
+    field.ok().map(|field| Field::Function(Arc::new(field)))
+}
+
 /// The prescribed jumps that are not zero everywhere.
 pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
     let nonzero = |f: &Option<ExprField>| {
@@ -59,7 +73,7 @@ pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
         .map(|i| InterfaceJump {
             between: i.between.map(|r| r as u16),
             value: nonzero(&i.jump),
-            flux: nonzero(&i.flux_jump),
+            flux: i.flux_jump_at.as_ref().map_or_else(|| nonzero(&i.flux_jump), at_points),
         })
         .filter(|j| j.value.is_some() || j.flux.is_some())
         .collect()

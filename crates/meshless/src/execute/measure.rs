@@ -41,7 +41,23 @@ pub(super) fn errors<const D: usize>(
             (region.name.clone(), errors)
         })
         .collect();
-    Errors { l2: all.l2(), linf: all.linf(), gradient_linf: slope.linf(), regions }
+    let jump_linf = jumps(scene, solved);
+    Errors { l2: all.l2(), linf: all.linf(), gradient_linf: slope.linf(), jump_linf, regions }
+}
+
+/// Largest error of the jumps of the slope that are unknowns, relative to the largest jump of the exact solution.
+fn jumps<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Option<f64> {
+    let points = &solved.discretization.interface_points;
+    let mut norms = ErrorNorms::default();
+    for (point, found) in points.iter().zip(&solved.system.extra) {
+        let slope = |region: u16| -> Option<f64> {
+            let exact = &scene.regions[region as usize].exact.as_ref()?.expr;
+            Some((0..D).map(|k| point.normal[k] * exact.derivative(k).eval(&point.at)).sum())
+        };
+        let exact = slope(point.between[1])? - slope(point.between[0])?;
+        norms.add(1.0, found - exact, exact);
+    }
+    (!points.is_empty()).then(|| norms.linf())
 }
 
 /// Where u is determined only up to a constant: gives it the mean of the exact solution.

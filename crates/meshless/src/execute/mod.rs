@@ -5,6 +5,7 @@ mod estimate;
 mod linear;
 mod measure;
 mod picture;
+mod reproduce;
 mod summary;
 mod unsteady;
 
@@ -19,6 +20,7 @@ use crate::{Error, NodalField};
 pub(crate) use discrete::{Discrete, Exact};
 pub use linear::linear_system;
 pub use picture::Picture;
+pub use reproduce::{Reproduction, reproduce};
 use unsteady::History;
 pub use unsteady::{Checkpoint, Frame};
 

@@ -33,6 +33,10 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
             .error(message, "use \"particle-difference\", or leave the choice to the plan")
             .into());
     }
+    if let (MethodName::ParticleDifferenceExtended, Some(time)) = (named, &scene.time) {
+        let message = "the method \"particle-difference-extended\" solves steady scenes only";
+        return Err(time.place.error(message, "use \"particle-difference\"").into());
+    }
     let (name, why) = match named {
         MethodName::Auto if slits => {
             (MethodName::ParticleDifference, "a slit: stencils that do not see through it".to_owned())

@@ -98,7 +98,9 @@ impl Survey {
         note(!uniform && scene.regions.len() > 1, Effect::DiffusivityJump { contrast });
         note(constants.iter().any(Option::is_none), Effect::VariableDiffusivity);
         note(scene.interfaces.iter().any(|i| nonzero(i.jump.as_ref())), Effect::ValueJump);
-        note(scene.interfaces.iter().any(|i| nonzero(i.flux_jump.as_ref())), Effect::FluxJump);
+        let flux_jumps =
+            scene.interfaces.iter().any(|i| nonzero(i.flux_jump.as_ref()) || i.flux_jump_at.is_some());
+        note(flux_jumps, Effect::FluxJump);
         note(scene.regions.iter().any(|r| nonzero(r.source.as_ref())), Effect::Source);
         let any = |test: fn(&ConditionSpec) -> bool| scene.boundaries.iter().any(|b| test(&b.condition));
         note(any(|c| matches!(c, ConditionSpec::Neumann(_))), Effect::Neumann);

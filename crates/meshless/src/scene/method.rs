@@ -16,19 +16,20 @@ const SHARP_ORDERS: [u64; 2] = [4, 16];
 const MAX_SMOOTHING: u64 = 100;
 
 /// Methods by name.
-const METHODS: [(&str, MethodName); 8] = [
+const METHODS: [(&str, MethodName); 9] = [
     ("auto", MethodName::Auto),
     ("gfdm-classical", MethodName::GfdmClassical),
     ("gfdm-conservative", MethodName::GfdmConservative),
     ("gfdm-positive", MethodName::GfdmPositive),
     ("gfdm-hybrid", MethodName::GfdmHybrid),
     ("particle-difference", MethodName::ParticleDifference),
+    ("particle-difference-extended", MethodName::ParticleDifferenceExtended),
     ("immersed-interface", MethodName::ImmersedInterface),
     ("sharp", MethodName::Sharp),
 ];
 
 /// Methods that are recognised and not built.
-const FUTURE_METHODS: [&str; 3] = ["particle-difference-extended", "surface-reaction", "free-space"];
+const FUTURE_METHODS: [&str; 2] = ["surface-reaction", "free-space"];
 
 /// Solvers by name.
 const SOLVERS: [(&str, SolverName); 5] = [
@@ -66,11 +67,14 @@ const EVERY: &[MethodName] = &[
     MethodName::GfdmPositive,
     MethodName::GfdmHybrid,
     MethodName::ParticleDifference,
+    MethodName::ParticleDifferenceExtended,
     MethodName::ImmersedInterface,
     MethodName::Sharp,
 ];
 /// Methods whose stencils know interfaces.
 const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
+/// Methods that continue values over interfaces by a wedge.
+const WEDGED: &[MethodName] = &[MethodName::ParticleDifference, MethodName::ParticleDifferenceExtended];
 
 /// Options and the methods that have them; none of the methods that are built has the last ones.
 const OPTIONS: [(&str, &[MethodName]); 13] = [
@@ -80,8 +84,8 @@ const OPTIONS: [(&str, &[MethodName]); 13] = [
     ("conservative_neumann", NAMED),
     ("support", EVERY),
     ("selection_tolerance", SELECTING),
-    ("weight", PARTICLE),
-    ("wedge", PARTICLE),
+    ("weight", WEDGED),
+    ("wedge", WEDGED),
     ("flux_weights", PARTICLE),
     ("visibility", PARTICLE),
     ("ghosts", &[]),

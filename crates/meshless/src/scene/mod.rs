@@ -33,8 +33,8 @@ pub use method::MethodNameError;
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
-    MethodOptions, MethodSpec, OutputSpec, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec, SlitSpec,
-    SolverName, WedgeName, WeightName,
+    MethodOptions, MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec,
+    SlitSpec, SolverName, WedgeName, WeightName,
 };
 
 pub use time::TimeSpec;

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::error::SceneError;
 use super::reader::{Table, Value};
 use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape, refuse_future_shapes};
-use super::spec::{InterfaceSpec, RegionSpec};
+use super::spec::{InterfaceSpec, PointValues, RegionSpec};
 
 /// Most regions of a scene; nodes carry the index of theirs in 16 bits.
 const MAX_REGIONS: usize = u16::MAX as usize;
@@ -67,7 +67,7 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
     let mut interfaces = Vec::new();
     let mut pairs = HashSet::new();
     for table in root.tables("interfaces")? {
-        table.allow(&["between", "jump", "flux_jump"])?;
+        table.allow(&["between", "jump", "flux_jump", "flux_jump_at"])?;
         let value = table.require("between")?;
         let between = pair(&value, regions)?;
         if !pairs.insert([between[0].min(between[1]), between[0].max(between[1])]) {
@@ -77,10 +77,45 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
             between,
             jump: table.get("jump").map(|value| value.data_expression()).transpose()?,
             flux_jump: table.get("flux_jump").map(|value| value.data_expression()).transpose()?,
+            flux_jump_at: flux_jump_at(&table)?,
             place: table.place,
         });
     }
     Ok(interfaces)
+}
+
+/// The flux jump at points.
+fn flux_jump_at(table: &Table<'_>) -> Result<Option<PointValues>, SceneError> {
+    let Some(value) = table.get("flux_jump_at") else { return Ok(None) };
+    if table.has("flux_jump") {
+        return Err(value.error("there is already a `flux_jump`", "give an expression or values at points"));
+    }
+    let solid = value.dimension == 3;
+    if value.dimension == 1 {
+        return Err(value.error("an interface in 1-D is one point", "use `flux_jump`"));
+    }
+    let keys: &[&str] = if solid { &["points", "values", "triangles"] } else { &["points", "values"] };
+    let table = value.subtable(keys)?;
+    let points = table.require("points")?;
+    let points = points.items()?.iter().map(Value::vector).collect::<Result<Vec<_>, _>>()?;
+    let given = table.require("values")?;
+    let values = given.items()?.iter().map(Value::number).collect::<Result<Vec<_>, _>>()?;
+    if points.len() != values.len() || points.len() < 3 {
+        let message = format!("{} values at {} points", values.len(), points.len());
+        return Err(given.error(message, "give at least 3 points, and a value for each"));
+    }
+    let mut triangles = Vec::new();
+    if solid {
+        for item in table.require("triangles")?.items()? {
+            let corners = item.items()?;
+            let [a, b, c] = &corners[..] else {
+                return Err(item.error(format!("expected 3 indices, found {}", corners.len()), ""));
+            };
+            let index = |v: &Value<'_>| v.integer(0, points.len() as u64 - 1).map(|k| k as u32);
+            triangles.push([index(a)?, index(b)?, index(c)?]);
+        }
+    }
+    Ok(Some(PointValues { points, values, triangles }))
 }
 
 /// Indices of two different regions.

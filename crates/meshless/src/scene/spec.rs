@@ -159,8 +159,21 @@ pub struct InterfaceSpec {
     pub jump: Option<ExprField>,
     /// `(eta du/dn)_B - (eta du/dn)_A`; none is zero.
     pub flux_jump: Option<ExprField>,
+    /// The same at points of the interface, linear in between, in place of an expression.
+    pub flux_jump_at: Option<PointValues>,
     /// The table in the file.
     pub place: Place,
+}
+
+/// Values at points of a closed curve (2-D) or of a triangulated surface (3-D).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointValues {
+    /// The points.
+    pub points: Vec<Vec<f64>>,
+    /// A value each.
+    pub values: Vec<f64>,
+    /// Triangles by the indices of their points; empty in 2-D, where the points are joined in their order.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 /// An interface that ends inside the domain.
@@ -258,6 +271,8 @@ pub enum MethodName {
     GfdmHybrid,
     /// `particle-difference`
     ParticleDifference,
+    /// `particle-difference-extended`
+    ParticleDifferenceExtended,
     /// `immersed-interface`
     ImmersedInterface,
     /// `sharp`

@@ -1,7 +1,7 @@
 //! Claims about the ladders.
 
 use super::cases::{Expected, Ladder};
-use super::{GRID, OURS, PAPER, SEEDS};
+use super::{FORMER, FORMER_VARYING, GRID, OURS, PAPER, SEEDS};
 use crate::verify::claims::Claims;
 use crate::verify::order;
 use crate::verify::row::Row;
@@ -132,5 +132,40 @@ pub(super) fn contrast(runner: &Runner<'_>, contrasts: &[f64], claims: &mut Clai
             measured,
             INSENSITIVE,
         );
+    }
+}
+
+/// The jump of the slope as an unknown: orders of u and of the jump, and what the further unknowns cost.
+pub(super) fn former(runner: &Runner<'_>, claims: &mut Claims) {
+    for (case, contrast) in [("circle", 100.0), ("cylinder", 1.0)] {
+        for (variant, label) in [(FORMER, "former method"), (FORMER_VARYING, "former method, varying")] {
+            let key = Key { case, variant, jump: contrast, level: 0, seed: GRID };
+            let order = fitted(runner, &key, |r| r.err_linf);
+            claims.at_least(case, format!("{label}, regular cloud: order of u"), order, 0.8);
+            let jumps: Vec<(f64, f64)> = (0..3)
+                .filter_map(|level| {
+                    let outcome = find(&runner.outcomes, &Key { level, ..key })?;
+                    Some((outcome.row.spacing, outcome.report.errors.as_ref()?.jump_linf?))
+                })
+                .collect();
+            // With one conductivity the equation of an unknown says what it is.
+            if case == "circle" {
+                let measured = (jumps.len() > 2).then(|| order::fit(&jumps)).flatten();
+                claims.at_least(
+                    case,
+                    format!("{label}, regular cloud: order of the jump of the slope"),
+                    measured,
+                    0.7,
+                );
+            } else {
+                let worst = jumps.iter().map(|j| j.1).reduce(f64::max);
+                claims.at_most(
+                    case,
+                    format!("{label}, regular cloud: error of the jump of the slope"),
+                    worst,
+                    1e-9,
+                );
+            }
+        }
     }
 }

@@ -2,6 +2,8 @@
 
 mod cases;
 mod checks;
+mod points;
+mod reproduce;
 mod sections;
 mod slit;
 
@@ -31,7 +33,17 @@ const EQUAL_WEIGHTS: Variant = Variant { flux_weights: Some(false), ..OURS };
 const VARYING: Variant = Variant { wedge: Some("varying"), ..OURS };
 /// What it is compared with.
 const HYBRID: Variant = Variant::plain("gfdm-hybrid").directly();
-const VARIANTS: [Variant; 5] = [OURS, PAPER, EQUAL_WEIGHTS, VARYING, HYBRID];
+const CONSERVATIVE: Variant = Variant::plain("gfdm-conservative").directly();
+/// The former method: the jump of the slope as an unknown, one for each point of the interface.
+const FORMER: Variant = Variant { wedge: Some("plane"), ..FORMER_VARYING };
+/// The same with the distance from the interface itself, and the jump where a neighbour's foot is.
+const FORMER_VARYING: Variant = Variant {
+    support: None,
+    wedge: Some("varying"),
+    ..Variant::plain("particle-difference-extended").directly()
+};
+const VARIANTS: [Variant; 8] =
+    [OURS, PAPER, EQUAL_WEIGHTS, VARYING, FORMER, FORMER_VARYING, HYBRID, CONSERVATIVE];
 
 /// The regular cloud.
 const GRID: u64 = 0;
@@ -60,15 +72,23 @@ pub(super) fn run(options: &Options) -> Study {
         }
     }
     jobs.extend(slit::jobs(rungs.min(4)));
+    jobs.extend(points::jobs());
     runner.run_all(jobs);
     for ladder in LADDERS.iter().filter(|l| options.wants(l.case, OURS.method)) {
         checks::ladder(&runner, ladder, &mut claims);
     }
     checks::contrast(&runner, contrasts, &mut claims);
     slit::claims(&runner, &mut claims);
+    points::claims(&runner, &mut claims);
+    checks::former(&runner, &mut claims);
+    let reproduced = reproduce::run(options, 3);
+    reproduce::claims(&reproduced, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
-    let sections = sections::sections(&runner);
+    let mut sections = sections::sections(&runner);
+    if options.wants("reproduction", OURS.method) {
+        sections.push(reproduce::section(&reproduced));
+    }
     Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
 }
 
@@ -82,6 +102,7 @@ fn jobs(ladder: &Ladder, rungs: usize, quick: bool) -> impl Iterator<Item = Job>
         // Where time is short: what claims and the diagram of costs rest on.
         let wanted = move |seed: &u64| match variant {
             OURS | PAPER => true,
+            FORMER | FORMER_VARYING => ladder.case != "ball" && (*seed == GRID || !quick),
             HYBRID => *seed != GRID || !quick,
             _ => !quick,
         };

@@ -90,8 +90,14 @@ pub(super) fn solve_in<const D: usize>(
     seconds.stencils += spent.stencils;
     seconds.assembly = spent.assembly;
     seconds.solve = spent.solve;
-    let system =
-        SystemSolution { u: state.u, info, floating_constants: 0, up_to_constant: false, split: None };
+    let system = SystemSolution {
+        u: state.u,
+        extra: Vec::new(),
+        info,
+        floating_constants: 0,
+        up_to_constant: false,
+        split: None,
+    };
     Ok(Solved { discrete, discretization, system, seconds, history: Some(History { report, frames }) })
 }
 

@@ -8,7 +8,9 @@ mod sharp;
 use meshless_interfaces::Method;
 use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams};
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
-use meshless_interfaces::particle_difference::{ParticleDifference, ParticleDifferenceParams};
+use meshless_interfaces::particle_difference::{
+    ParticleDifference, ParticleDifferenceExtended, ParticleDifferenceParams,
+};
 use meshless_interfaces::sharp::{Sharp, SharpParams};
 
 use super::effects::Survey;
@@ -22,6 +24,8 @@ pub enum MethodParams {
     Gfdm(GfdmParams),
     /// Interface-immersed particle differences.
     ParticleDifference(ParticleDifferenceParams),
+    /// The same with the jumps of the slope as unknowns.
+    ParticleDifferenceExtended(ParticleDifferenceParams),
     /// DC-PSE operators with immersed interfaces.
     ImmersedInterface(ImmersedParams),
     /// Sharp fits of high order.
@@ -58,6 +62,9 @@ impl MethodParams {
     pub(super) fn new(name: MethodName, scene: &Scene, survey: &Survey) -> Self {
         match name {
             MethodName::ParticleDifference => Self::ParticleDifference(particle_difference::params(scene)),
+            MethodName::ParticleDifferenceExtended => {
+                Self::ParticleDifferenceExtended(particle_difference::extended(scene))
+            }
             MethodName::ImmersedInterface => Self::ImmersedInterface(dcpse::immersed(scene)),
             MethodName::Sharp => Self::Sharp(sharp::params(scene)),
             _ => Self::Gfdm(gfdm::params(name, scene, survey)),
@@ -69,6 +76,9 @@ impl MethodParams {
         match self {
             Self::Gfdm(params) => Box::new(Gfdm { params: *params }),
             Self::ParticleDifference(params) => Box::new(ParticleDifference { params: *params }),
+            Self::ParticleDifferenceExtended(params) => {
+                Box::new(ParticleDifferenceExtended { params: *params })
+            }
             Self::ImmersedInterface(params) => Box::new(ImmersedInterface { params: *params }),
             Self::Sharp(params) => Box::new(Sharp { params: *params }),
         }
@@ -78,7 +88,7 @@ impl MethodParams {
     pub fn order(&self) -> usize {
         match self {
             Self::Gfdm(params) => gfdm::order(params),
-            Self::ParticleDifference(params) => params.degree,
+            Self::ParticleDifference(params) | Self::ParticleDifferenceExtended(params) => params.degree,
             Self::ImmersedInterface(params) => params.order,
             Self::Sharp(params) => params.order,
         }
@@ -95,7 +105,7 @@ impl MethodParams {
     /// Order at which the error in u falls where something jumps at an interface.
     pub fn interface_order(&self) -> usize {
         match self {
-            Self::Gfdm(_) => 1,
+            Self::Gfdm(_) | Self::ParticleDifferenceExtended(_) => 1,
             Self::ParticleDifference(_) | Self::ImmersedInterface(_) => 2,
             Self::Sharp(params) => params.order,
         }
@@ -104,7 +114,9 @@ impl MethodParams {
     pub(super) fn steps(&self, survey: &Survey) -> Steps {
         match self {
             Self::Gfdm(params) => gfdm::steps(params, survey),
-            Self::ParticleDifference(_) => particle_difference::steps(survey),
+            Self::ParticleDifference(_) | Self::ParticleDifferenceExtended(_) => {
+                particle_difference::steps(survey)
+            }
             Self::ImmersedInterface(_) => dcpse::steps(survey),
             Self::Sharp(_) => sharp::steps(survey),
         }
@@ -114,7 +126,10 @@ impl MethodParams {
     pub(super) fn support(&self, dimension: usize) -> Option<f64> {
         match self {
             Self::ImmersedInterface(params) => Some(dcpse::support(dimension, params.order)),
-            Self::Gfdm(_) | Self::ParticleDifference(_) | Self::Sharp(_) => None,
+            Self::Gfdm(_)
+            | Self::ParticleDifference(_)
+            | Self::ParticleDifferenceExtended(_)
+            | Self::Sharp(_) => None,
         }
     }
 }

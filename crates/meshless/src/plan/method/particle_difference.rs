@@ -30,6 +30,15 @@ pub(super) fn params(scene: &Scene) -> ParticleDifferenceParams {
     }
 }
 
+/// With the jump as an unknown there is nothing that the second derivative could be taken from.
+pub(super) fn extended(scene: &Scene) -> ParticleDifferenceParams {
+    let wedge = match scene.method.options.wedge {
+        Some(WedgeName::Varying | WedgeName::Quadratic) => Wedge::Varying,
+        _ => Wedge::Plane,
+    };
+    ParticleDifferenceParams { wedge, ..params(scene) }
+}
+
 pub(super) fn steps(survey: &Survey) -> Steps {
     Steps {
         stencils: true,

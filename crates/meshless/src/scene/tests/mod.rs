@@ -1,6 +1,7 @@
 //! Scenes that are right, scenes that are wrong, and scenes that were mangled at random.
 
 mod mangled;
+mod points;
 mod slits;
 mod valid;
 mod wrong;

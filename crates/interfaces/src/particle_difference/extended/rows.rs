@@ -1,0 +1,238 @@
+//! Rows over nodes and jumps.
+
+use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit, StencilError};
+
+use super::points::InterfacePoints;
+use crate::local::enlarged_support;
+use crate::particle_difference::feet::{Feet, Foot, may_jump};
+use crate::particle_difference::leg::GRADIENT_STEP;
+use crate::particle_difference::{ParticleDifferenceParams, Wedge};
+use crate::{MethodError, Problem};
+
+/// A row `sum_j c_j (u_j - u_i) + r u_i + sum_k e_k J_k = b`; that of a point has no node i of its own, and its first sum
+/// is `sum_j c_j u_j`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ExtendedRow {
+    pub(super) nodes: Vec<(u32, f64)>,
+    pub(super) jumps: Vec<(u32, f64)>,
+    pub(super) row_sum: f64,
+    pub(super) rhs: f64,
+    pub(super) enlarged: bool,
+}
+
+/// Makes the rows.
+pub(super) struct RowMaker<'a, const D: usize> {
+    problem: &'a Problem<'a, D>,
+    feet: &'a Feet<D>,
+    points: &'a InterfacePoints<D>,
+    params: ParticleDifferenceParams,
+    fit: LocalFit<D>,
+}
+
+/// Memory of one thread.
+pub(super) struct Scratch<const D: usize> {
+    fit: FitScratch<D>,
+    nodes: Vec<u32>,
+    offsets: Vec<[f64; D]>,
+    weights: Vec<f64>,
+    coefficients: Vec<f64>,
+}
+
+/// Whence a fit is made: a point, its region, and an interface that it sees.
+struct Centre<'f, const D: usize> {
+    at: [f64; D],
+    region: u16,
+    node: usize,
+    feet: &'f [Foot<D>],
+}
+
+impl<'a, const D: usize> RowMaker<'a, D> {
+    pub(super) fn new(
+        problem: &'a Problem<'a, D>,
+        feet: &'a Feet<D>,
+        points: &'a InterfacePoints<D>,
+        params: ParticleDifferenceParams,
+    ) -> Self {
+        let fit = LocalFit::new(FitParams { degree: params.degree, ..FitParams::default() });
+        Self { problem, feet, points, params, fit }
+    }
+
+    pub(super) fn scratch(&self) -> Scratch<D> {
+        let most = self.problem.supports.lists.max_count() + 1;
+        Scratch {
+            fit: self.fit.scratch(most),
+            nodes: Vec::new(),
+            offsets: Vec::new(),
+            weights: Vec::new(),
+            coefficients: Vec::new(),
+        }
+    }
+
+    /// The row of a node where u is not prescribed.
+    pub(super) fn node(&self, i: usize, scratch: &mut Scratch<D>) -> Result<ExtendedRow, MethodError> {
+        let problem = self.problem;
+        let (x, h, eta) = (problem.cloud.points()[i], problem.cloud.spacing()[i], problem.eta[i]);
+        let (mut row_sum, mut rhs, functional, size) = match problem.cloud.boundary_of(i) {
+            None => {
+                let field = &problem.materials[problem.labels[i] as usize].diffusivity;
+                let gradient = field.gradient(&x, GRADIENT_STEP * h);
+                let source = problem.source.map_or(0.0, |f| f[i]);
+                (0.0, source, Functional::Diffusion { eta, gradient }, h.powi(D as i32))
+            }
+            Some(_) => {
+                let (a, g, direction) = self.boundary(i)?;
+                (a, g, Functional::Directional(direction), h.powi(D as i32 - 1))
+            }
+        };
+        let centre = Centre { at: x, region: problem.labels[i], node: i, feet: self.feet.of(i) };
+        let mut row = ExtendedRow::default();
+        let lists = problem.supports.lists;
+        let jump = match self.apply(&centre, lists.of(i), &functional, -size, scratch, &mut row) {
+            Ok(jump) => jump,
+            Err(_) => {
+                row = ExtendedRow { enlarged: true, ..ExtendedRow::default() };
+                self.apply(&centre, &enlarged_support(problem, i), &functional, -size, scratch, &mut row)?
+            }
+        };
+        row_sum *= size;
+        rhs = size * rhs - jump;
+        row.nodes.retain(|&(j, _)| j as usize != i);
+        Ok(ExtendedRow { row_sum, rhs, ..row })
+    }
+
+    /// The conditions of the faces of a boundary node, added: `a u + flux = g`, the flux as a derivative along a vector
+    /// that is to be subtracted.
+    fn boundary(&self, i: usize) -> Result<(f64, f64, [f64; D]), MethodError> {
+        let problem = self.problem;
+        let index = problem.cloud.boundary().iter().position(|b| b.node as usize == i);
+        let (mut a, mut g, mut direction) = (0.0, 0.0, [0.0; D]);
+        let Some(index) = index else { return Ok((a, g, direction)) };
+        let node = &problem.cloud.boundary()[index];
+        for (touch, condition) in node.touches.iter().zip(&problem.conditions[index]) {
+            let (factor, given) = condition.as_flux(problem.eta[i]).ok_or_else(|| {
+                MethodError::RobinWithoutFlux { node: i, position: problem.cloud.points()[i].to_vec() }
+            })?;
+            a += factor;
+            g += given;
+            direction.iter_mut().zip(touch.normal).for_each(|(d, n)| *d -= problem.eta[i] * n);
+        }
+        Ok((a, g, direction))
+    }
+
+    /// The flux condition at a point: `kappa_B (dq/dn + J) - kappa_A dq/dn = g`, divided by both conductivities.
+    pub(super) fn point(&self, k: usize, scratch: &mut Scratch<D>) -> Result<ExtendedRow, MethodError> {
+        let (problem, point) = (self.problem, self.points.list[k]);
+        let [first, second] = point.between;
+        let eta = point.between.map(|l| problem.materials[l as usize].diffusivity.at(&point.at));
+        let flux = problem.jump_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
+        let h = problem.cloud.spacing()[point.node];
+        let sum = eta[0] + eta[1];
+        let mut row =
+            ExtendedRow { rhs: h * flux.map_or(0.0, |g| g.at(&point.at)) / sum, ..Default::default() };
+        let factor = h * (eta[1] - eta[0]) / sum;
+        if factor != 0.0 {
+            let foot = Foot {
+                beyond: second,
+                at: meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 },
+            };
+            let feet = [foot];
+            let centre = Centre { at: point.at, region: first, node: point.node, feet: &feet };
+            let mut neighbors = problem.supports.lists.of(point.node).to_vec();
+            neighbors.push(point.node as u32);
+            let slope = Functional::Directional(point.normal);
+            let jump = match self.apply(&centre, &neighbors, &slope, factor, scratch, &mut row) {
+                Ok(jump) => jump,
+                Err(_) => {
+                    let mut wide = enlarged_support(problem, point.node);
+                    wide.push(point.node as u32);
+                    let rhs = row.rhs;
+                    row = ExtendedRow { rhs, ..ExtendedRow::default() };
+                    self.apply(&centre, &wide, &slope, factor, scratch, &mut row)?
+                }
+            };
+            row.rhs -= jump;
+            // The coefficients of a derivative add up to nothing, so values and differences are the same.
+            row.row_sum = row.nodes.iter().map(|(_, c)| c).sum();
+        }
+        row.jumps.push((k as u32, h * eta[1] / sum));
+        Ok(row)
+    }
+
+    /// Adds `factor` times an operator on the polynomial of the centre's side to a row; returns what is given of it.
+    fn apply(
+        &self,
+        centre: &Centre<'_, D>,
+        neighbors: &[u32],
+        functional: &Functional<D>,
+        factor: f64,
+        scratch: &mut Scratch<D>,
+        row: &mut ExtendedRow,
+    ) -> Result<f64, MethodError> {
+        let (problem, x) = (self.problem, &centre.at);
+        let (points, radii, labels) = (problem.cloud.points(), problem.supports.radius, problem.labels);
+        let Scratch { fit, nodes, offsets, weights, coefficients } = scratch;
+        let foot_towards = |label: u16| centre.feet.iter().find(|foot| foot.beyond == label);
+        let same = |label: u16| label == centre.region || !may_jump(problem, centre.region, label);
+        nodes.clear();
+        nodes.extend(neighbors.iter().copied().filter(|&j| {
+            let label = labels[j as usize];
+            same(label) || foot_towards(label).is_some()
+        }));
+        if points[centre.node] == *x {
+            nodes.push(centre.node as u32);
+        }
+        offsets.clear();
+        weights.clear();
+        let mut radius = radii[centre.node];
+        for &j in nodes.iter() {
+            let offset: [f64; D] = std::array::from_fn(|k| points[j as usize][k] - x[k]);
+            let distance = offset.iter().map(|d| d * d).sum::<f64>().sqrt();
+            offsets.push(offset);
+            weights.push(self.params.weight.value(distance, radii[centre.node], radii[j as usize]));
+            radius = radius.max(distance);
+        }
+        let located = |source: StencilError| MethodError::stencil(centre.node, x, source);
+        self.fit.factor(offsets, weights, radius, fit).map_err(located)?;
+        coefficients.resize(nodes.len(), 0.0);
+        self.fit.coefficients(functional, fit, coefficients).map_err(located)?;
+        let mut given = 0.0;
+        for (&j, &c) in nodes.iter().zip(coefficients.iter()) {
+            row.nodes.push((j, factor * c));
+            let label = labels[j as usize];
+            if same(label) {
+                continue;
+            }
+            let Some(foot) = foot_towards(label) else { continue };
+            let y = &points[j as usize];
+            let plane: f64 = (0..D).map(|k| (y[k] - foot.at.point[k]) * foot.at.normal[k]).sum();
+            let own =
+                self.feet.towards(j as usize, centre.region).filter(|_| self.params.wedge != Wedge::Plane);
+            let (at, distance) =
+                own.map_or((foot.at.point, plane), |own| (own.at.point, own.at.distance.abs()));
+            let sign = if centre.region < label { 1.0 } else { -1.0 };
+            let normal = foot.at.normal.map(|n| sign * n);
+            let between = [centre.region.min(label), centre.region.max(label)];
+            let h = problem.cloud.spacing()[centre.node];
+            self.points.interpolate(between, &at, &normal, h, -factor * c * distance, &mut row.jumps);
+            if let Some((jump, sign)) = problem.jump_between(centre.region, label)
+                && let Some(value) = &jump.value
+            {
+                given -= factor * c * sign * value.at(&at);
+            }
+        }
+        merge(&mut row.jumps);
+        Ok(given)
+    }
+}
+
+/// Adds up what belongs to the same unknown.
+fn merge(entries: &mut Vec<(u32, f64)>) {
+    entries.sort_by_key(|e| e.0);
+    entries.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
+}
