@@ -5,6 +5,7 @@ mod effects;
 mod measure;
 mod micro;
 mod scene;
+mod sharp;
 mod solvers;
 mod table;
 
@@ -30,6 +31,11 @@ const BENCHES: &[Bench] = &[
         micro::sparse::run,
     ),
     ("freespace", "convolution in free space against the bare transforms", micro::freespace::run),
+    (
+        "sharp",
+        "the sharp method: stencils against their targets, and whole scenes to a given error",
+        sharp::run,
+    ),
     ("solvers", "multigrid against its targets: a ball in a box, six kinds of discretisation", solvers::run),
     ("effects", "what each effect of a scene costs, and what the facade does", effects::run),
     ("scene", "a scene of 1e5 nodes and contrast 1e6, from points to solution", scene::run),
