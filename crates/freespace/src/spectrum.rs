@@ -5,9 +5,9 @@ use std::f64::consts::{PI, TAU};
 use rustfft::num_complex::Complex;
 
 use crate::error::FreeSpaceError;
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, default_smoothing, passed};
 use crate::mesh::Mesh;
-use crate::plan::{Real, passed};
+use crate::plan::Real;
 
 /// Smoothing radii over the spacing that are tried: below 1 the images of the kernel's spectrum overlap for every order.
 const SMOOTHINGS: [f64; 9] = [1.0, 1.1, 1.25, 1.4, 1.55, 1.7, 1.85, 2.0, 2.25];
@@ -79,7 +79,8 @@ impl Spectrum {
             let part = match kernel {
                 _ if k > RESOLVED * nyquist => 1.0,
                 Kernel::Gaussian { order, smoothing } => {
-                    let sigma = smoothing.unwrap_or(2.0) * self.spacing;
+                    let ratio = smoothing.or_else(|| default_smoothing(order).ok()).unwrap_or(2.0);
+                    let sigma = ratio * self.spacing;
                     let missing = held_back(order, k * sigma);
                     let image = 2.0 * nyquist - k;
                     let images = (2.0 * self.dimension as f64).sqrt() * passed(order, image * sigma);

@@ -1,6 +1,8 @@
 //! Estimates of the error and choices that rest on them.
 
-use meshless_freespace::{Centring, FreeSpaceError, Kernel, Mesh, Output, Plan, Spectrum, Workspace};
+use meshless_freespace::{
+    Centring, FreeSpaceError, Kernel, Mesh, Output, Plan, Spectrum, Workspace, default_smoothing,
+};
 
 /// A Gaussian source whose potential in three dimensions is erf(r / s sqrt 2) / 4 pi r times its total.
 fn problem(cells: usize) -> (Mesh<3>, Vec<f64>, Vec<f64>) {
@@ -20,11 +22,16 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|v| v * v).sum::<f64>().sqrt()
 }
 
+/// One smoothing radius for all orders.
+fn wide(order: usize) -> Kernel {
+    Kernel::Gaussian { order, smoothing: Some(2.0) }
+}
+
 #[test]
 fn the_next_order_tells_the_error() {
     let (mesh, source, exact) = problem(40);
     for (order, margin) in [(2, 0.4), (4, 0.4), (6, 0.4), (8, 0.4)] {
-        let plan: Plan<3> = Plan::new(&mesh, Kernel::gaussian(order)).expect("a plan");
+        let plan: Plan<3> = Plan::new(&mesh, wide(order)).expect("a plan");
         let wanted = [Output::Potential { source: 0 }, Output::PotentialError { source: 0 }];
         let mut out = Vec::new();
         plan.solve(&[&source], &wanted, &mut Workspace::default(), &mut out).expect("fields");
@@ -35,7 +42,7 @@ fn the_next_order_tells_the_error() {
         assert!(unexplained < margin * error, "order {order}: {unexplained:e} of {error:e} is left");
         // The estimate is what the next order adds.
         if order < 8 {
-            let next: Plan<3> = Plan::new(&mesh, Kernel::gaussian(order + 2)).expect("a plan");
+            let next: Plan<3> = Plan::new(&mesh, wide(order + 2)).expect("a plan");
             let next = next.potential(&source).expect("a potential");
             let difference = norm(next.iter().zip(&out[0]).zip(&out[1]).map(|((n, v), d)| n - v - d));
             assert!(difference < 1e-6 * estimate, "order {order}: {difference:e} of {estimate:e}");
@@ -45,6 +52,19 @@ fn the_next_order_tells_the_error() {
     let wanted = [Output::PotentialError { source: 0 }];
     let refused = spectral.solve(&[&source], &wanted, &mut Workspace::default(), &mut Vec::new());
     assert!(matches!(refused, Err(FreeSpaceError::Kernel { .. })));
+}
+
+#[test]
+fn the_default_radius_is_better_than_two_spacings_and_grows_with_the_order() {
+    let ratios: Vec<f64> = (2..=20).step_by(2).map(|m| default_smoothing(m).expect("an order")).collect();
+    assert!(ratios.windows(2).all(|w| w[0] < w[1]) && ratios[0] > 1.2 && ratios[9] < 1.8, "{ratios:?}");
+    let (mesh, source, exact) = problem(40);
+    let error = |smoothing| {
+        let plan: Plan<3> = Plan::new(&mesh, Kernel::Gaussian { order: 10, smoothing }).expect("a plan");
+        let phi = plan.potential(&source).expect("a potential");
+        norm(exact.iter().zip(&phi).map(|(e, v)| e - v))
+    };
+    assert!(error(None) < 0.15 * error(Some(2.0)));
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn uniform<const D: usize>(
     source: impl Fn([f64; D]) -> f64,
     wanted: &[Output],
 ) -> Vec<Vec<f64>> {
-    let plan: Plan<D> = Plan::new(fine, Kernel::gaussian(order)).expect("a plan");
+    let plan: Plan<D> = Plan::new(fine, Kernel::Gaussian { order, smoothing: Some(2.0) }).expect("a plan");
     let mut out = Vec::new();
     plan.solve(&[&fine.sample(source)], wanted, &mut Workspace::default(), &mut out).expect("fields");
     let place = |p: [f64; D], a: usize| ((p[a] - fine.coordinate(a, 0)) / fine.spacing()[a]).round() as usize;

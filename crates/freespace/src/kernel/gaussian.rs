@@ -45,6 +45,17 @@ pub(super) fn check_order(order: usize) -> Result<(), FreeSpaceError> {
     }
 }
 
+/// `zeta_m^(s) = exp(-s^2/2) sum_{j < m/2} (s^2/2)^j / j!`, what a Gaussian kernel leaves of a wave number.
+pub(crate) fn passed(order: usize, s: f64) -> f64 {
+    let x = s * s / 2.0;
+    let (mut term, mut sum) = (1.0, 0.0);
+    for j in 0..order / 2 {
+        sum += term;
+        term *= x / (j + 1) as f64;
+    }
+    (-x).exp() * sum
+}
+
 impl<const D: usize> Gaussian<D> {
     /// The kernel of even order 2 to 20 and smoothing radius `sigma`, a length.
     ///

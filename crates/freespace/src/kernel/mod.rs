@@ -9,6 +9,7 @@ mod truncated;
 
 pub use band_pass::BandPass;
 pub use gaussian::Gaussian;
+pub(crate) use gaussian::passed;
 pub(crate) use screened::Screened;
 pub use spectral::Spectral;
 pub use truncated::Truncated;
@@ -46,11 +47,22 @@ impl Kernel {
     }
 }
 
-/// The ratio sigma/h that suits an order where nothing is known of the source.
+/// What a kernel may leave of the wave number of the mesh itself, `2 pi / h`: as much as round-off.
+const IMAGE: f64 = 1e-14;
+
+/// The ratio sigma/h that suits an order where nothing is known of the source: the least at which the sum over the points of
+/// a mesh is as good as an integral, so that the error falls like `h^m` down to round-off. 1.28 for order 2, 1.50 for order 10,
+/// 1.69 for order 20; others use 2 for all, which is `(2/1.5)^10 = 18` times less accurate at order 10.
 ///
 /// # Errors
 /// [`FreeSpaceError::Order`].
 pub fn default_smoothing(order: usize) -> Result<f64, FreeSpaceError> {
     gaussian::check_order(order)?;
-    Ok(2.0)
+    let (mut low, mut high) = (1.0, 2.0);
+    // To three digits, which is all that matters.
+    while high - low > 1e-3 {
+        let middle = 0.5 * (low + high);
+        if passed(order, std::f64::consts::TAU * middle) > IMAGE { low = middle } else { high = middle }
+    }
+    Ok(high)
 }

@@ -8,7 +8,7 @@ use super::memory;
 use super::octant::{Mixed, Octant};
 use super::real::Real;
 use crate::error::FreeSpaceError;
-use crate::kernel::{Gaussian, Kernel, Radial, Spectral, Truncated, default_smoothing};
+use crate::kernel::{Gaussian, Kernel, Radial, Spectral, Truncated, default_smoothing, passed};
 use crate::mesh::Mesh;
 
 /// Smoothing radii that the density of any order ends within, to round-off.
@@ -175,15 +175,4 @@ pub(super) fn engine<const D: usize, T: Real>(
         (None, None) => layout.radial(&Spectral::<D>::new(coarsest(mesh) / std::f64::consts::PI)?),
     };
     Ok(layout.engine(&octant, gaussian))
-}
-
-/// `zeta_m^(s) = exp(-s^2/2) sum_{j < m/2} (s^2/2)^j / j!`, what a Gaussian kernel leaves of a wave number.
-pub(crate) fn passed(order: usize, s: f64) -> f64 {
-    let x = s * s / 2.0;
-    let (mut term, mut sum) = (1.0, 0.0);
-    for j in 0..order / 2 {
-        sum += term;
-        term *= x / (j + 1) as f64;
-    }
-    (-x).exp() * sum
 }

@@ -5,6 +5,7 @@
 //! of all planes never exists, and lines of zeros are never transformed.
 
 use rayon::prelude::*;
+use realfft::ComplexToReal;
 use rustfft::num_complex::Complex;
 
 use super::axis::{Axis, RealTransforms};
@@ -14,7 +15,7 @@ use super::real::Real;
 use super::tile::{Shape, Tile};
 
 /// Lines that are transformed before they are stored across.
-const LINES: usize = 16;
+const LINES: usize = 8;
 
 /// Planes that are worked on together where a plane is a single line.
 const PLANES_OF_LINES: usize = 32;
@@ -82,6 +83,12 @@ impl<T: Real> Engine<T> {
         spectra.par_chunks_mut(half * y.n).zip(source.par_chunks(x.n * y.n)).for_each_init(
             || (plan.make_input_vec(), vec![Complex::default(); LINES * half], plan.make_scratch_vec()),
             |(padded, lines, scratch), (slab, values)| {
+                if y.n == 1 {
+                    x.load(values, padded);
+                    let outcome = plan.process_with_scratch(padded, slab, scratch);
+                    debug_assert!(outcome.is_ok(), "the buffers were made for this length");
+                    return;
+                }
                 for (group, rows) in values.chunks(LINES * x.n).enumerate() {
                     let count = rows.len() / x.n;
                     for (row, line) in rows.chunks_exact(x.n).zip(lines.chunks_exact_mut(half)) {
@@ -108,6 +115,11 @@ impl<T: Real> Engine<T> {
         output.par_chunks_mut(x.n * y.n).zip(spectra.par_chunks(half * y.n)).for_each_init(
             || (plan.make_output_vec(), vec![Complex::default(); LINES * half], plan.make_scratch_vec()),
             |(padded, lines, scratch), (values, slab)| {
+                if y.n == 1 {
+                    lines[..half].copy_from_slice(slab);
+                    back(x, plan.as_ref(), &mut lines[..half], padded, scratch, values);
+                    return;
+                }
                 for (group, rows) in values.chunks_mut(LINES * x.n).enumerate() {
                     let count = rows.len() / x.n;
                     for (k, across) in slab.chunks_exact(y.n).enumerate() {
@@ -117,17 +129,29 @@ impl<T: Real> Engine<T> {
                         }
                     }
                     for (row, line) in rows.chunks_exact_mut(x.n).zip(lines.chunks_exact_mut(half)) {
-                        // Round-off only: the spectrum of a real line is real at both ends.
-                        line[0].im = T::zero();
-                        if x.len.is_multiple_of(2) {
-                            line[half - 1].im = T::zero();
-                        }
-                        let outcome = plan.process_with_scratch(line, padded, scratch);
-                        debug_assert!(outcome.is_ok(), "the buffers were made for this length");
-                        x.store(padded, row);
+                        back(x, plan.as_ref(), line, padded, scratch, row);
                     }
                 }
             },
         );
     }
+}
+
+/// A line of a spectrum back to real values.
+fn back<T: Real>(
+    x: &Axis<T>,
+    plan: &dyn ComplexToReal<T>,
+    line: &mut [Complex<T>],
+    padded: &mut [T],
+    scratch: &mut [Complex<T>],
+    row: &mut [T],
+) {
+    // Round-off only: the spectrum of a real line is real at both ends.
+    line[0].im = T::zero();
+    if x.len.is_multiple_of(2) {
+        line[x.half() - 1].im = T::zero();
+    }
+    let outcome = plan.process_with_scratch(line, padded, scratch);
+    debug_assert!(outcome.is_ok(), "the buffers were made for this length");
+    x.store(padded, row);
 }

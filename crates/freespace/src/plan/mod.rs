@@ -20,7 +20,6 @@ use build::{Layout, slot};
 use engine::{Engine, Spectra};
 
 pub use boundary::{Boundary, Face};
-pub(crate) use build::passed;
 pub use output::Output;
 use output::Wanted;
 pub use real::Real;

@@ -64,6 +64,13 @@ pub(super) struct Wanted<T> {
     pub(super) phases: Option<[Vec<Complex<T>>; 3]>,
 }
 
+impl<T> Wanted<T> {
+    /// Whether it is a source convolved with the kernel and no more.
+    pub(super) fn is_plain(&self) -> bool {
+        matches!(self.terms[..], [Term { axis: None, .. }]) && !self.estimate && self.phases.is_none()
+    }
+}
+
 impl Output {
     /// Whether it is an estimate.
     pub(super) fn is_estimate(self) -> bool {

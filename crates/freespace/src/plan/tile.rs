@@ -9,6 +9,10 @@ use super::real::Real;
 /// Columns that are gathered at once: four cache lines of complex numbers from each row.
 const COLUMNS: usize = 16;
 
+/// Numbers between two columns: without them, columns whose length is a power of two would all fall on the same few lines of
+/// the cache.
+const PADDING: usize = 4;
+
 /// How much a tile holds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
@@ -27,7 +31,10 @@ pub(super) struct Tile<T> {
     rows: Vec<Vec<Complex<T>>>,
     /// For each source: padded columns.
     columns: Vec<Vec<Complex<T>>>,
+    /// One column of an output.
     product: Vec<Complex<T>>,
+    /// Columns of an output.
+    results: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
 }
 
@@ -38,8 +45,9 @@ impl<T: Real> Tile<T> {
         Self {
             shape,
             rows: (0..shape.sources.max(shape.outputs)).map(|_| zeros(z.n * shape.block * y.len)).collect(),
-            columns: (0..shape.sources).map(|_| zeros(COLUMNS * z.len)).collect(),
-            product: zeros(COLUMNS * z.len),
+            columns: (0..shape.sources).map(|_| zeros(COLUMNS * (z.len + PADDING))).collect(),
+            product: zeros(z.len),
+            results: zeros(COLUMNS * (z.len + PADDING)),
             scratch: zeros(y.scratch().max(z.scratch())),
         }
     }
@@ -92,35 +100,69 @@ impl<T: Real> Tile<T> {
         wanted: &[Wanted<T>],
     ) {
         let [_, y, z] = &engine.axes;
-        let count = COLUMNS.min(width - start);
+        let (count, stride) = (COLUMNS.min(width - start), z.len + PADDING);
         for (rows, columns) in self.rows.iter().zip(&mut self.columns) {
-            let columns = &mut columns[..count * z.len];
             for (j, row) in rows.chunks_exact(width).take(z.n.min(z.len)).enumerate() {
                 for (c, value) in row[start..start + count].iter().enumerate() {
-                    columns[c * z.len + j] = *value;
+                    columns[c * stride + j] = *value;
                 }
             }
-            columns.chunks_exact_mut(z.len).for_each(|c| z.continue_in_place(c));
-            z.forward.process_with_scratch(columns, &mut self.scratch);
+            for column in columns.chunks_exact_mut(stride).take(count) {
+                z.continue_in_place(&mut column[..z.len]);
+                z.forward.process_with_scratch(&mut column[..z.len], &mut self.scratch);
+            }
         }
-        for (wanted, rows) in wanted.iter().zip(&mut self.rows) {
+        for (output, (wanted, rows)) in wanted.iter().zip(&mut self.rows).enumerate() {
             for c in 0..count {
                 let place = start + c;
                 let waves = [first + place / y.len, place % y.len];
-                let line = c * z.len..(c + 1) * z.len;
-                combine(engine, waves, wanted, &self.columns, line.clone(), &mut self.product[line]);
+                let line = c * stride..c * stride + z.len;
+                // A source that no later output needs may be overwritten.
+                let in_place = self.shape.sources == 1 && output + 1 == self.shape.outputs;
+                let out = if in_place && wanted.is_plain() {
+                    let column = &mut self.columns[0][line];
+                    multiply(engine, waves, wanted, column);
+                    column
+                } else {
+                    let out = &mut self.product[..z.len];
+                    combine(engine, waves, wanted, &self.columns, line, out);
+                    out
+                };
+                z.inverse.process_with_scratch(out, &mut self.scratch);
+                self.results[c * stride..c * stride + z.n.min(z.len)].copy_from_slice(&out[..z.n.min(z.len)]);
             }
-            let product = &mut self.product[..count * z.len];
-            z.inverse.process_with_scratch(product, &mut self.scratch);
             for (j, row) in rows.chunks_exact_mut(width).take(z.n).enumerate() {
                 // Beyond a period the values begin again.
                 let place = if j < z.len { j } else { j - z.len };
                 for (c, value) in row[start..start + count].iter_mut().enumerate() {
-                    *value = product[c * z.len + place];
+                    *value = self.results[c * stride + place];
                 }
             }
         }
     }
+}
+
+/// A line of a source in Fourier space times Ĝ.
+fn multiply<T: Real>(engine: &Engine<T>, waves: [usize; 2], wanted: &Wanted<T>, line: &mut [Complex<T>]) {
+    let sign = T::rounded(wanted.terms.first().map_or(1.0, |t| t.sign));
+    weigh(engine, waves, line, |value, g| *value = *value * (g * sign));
+}
+
+/// Ĝ of a line, place by place.
+fn weigh<T: Real>(
+    engine: &Engine<T>,
+    waves: [usize; 2],
+    line: &mut [Complex<T>],
+    mut apply: impl FnMut(&mut Complex<T>, T),
+) {
+    let [_, y, z] = &engine.axes;
+    let half = z.half();
+    let kernel = &engine.kernel[(waves[0] * y.half() + y.fold(waves[1])) * half..][..half];
+    let (low, high) = line.split_at_mut(half);
+    low.iter_mut().zip(kernel).for_each(|(value, g)| apply(value, *g));
+    // The other wave numbers have the magnitudes of those before, from the far end.
+    let mirrored = kernel[1..].iter().rev().skip(1 - z.len % 2);
+    high.iter_mut().zip(mirrored).for_each(|(value, g)| apply(value, *g));
 }
 
 /// A line of an output in Fourier space: Ĝ, or the estimate of its error, times its terms.
@@ -133,8 +175,6 @@ fn combine<T: Real>(
     out: &mut [Complex<T>],
 ) {
     let [x, y, z] = &engine.axes;
-    let half = z.half();
-    let kernel = &engine.kernel[(waves[0] * y.half() + y.fold(waves[1])) * half..][..half];
     for (index, term) in wanted.terms.iter().enumerate() {
         let source = &sources[term.source][line.clone()];
         let sign = T::rounded(term.sign);
@@ -157,11 +197,7 @@ fn combine<T: Real>(
     if let (true, Some(estimate)) = (wanted.estimate, &engine.estimate) {
         estimate.apply([waves[0], y.fold(waves[1])], z.half(), out);
     } else {
-        let (low, high) = out.split_at_mut(half);
-        low.iter_mut().zip(kernel).for_each(|(o, g)| *o = *o * *g);
-        // The other wave numbers have the magnitudes of those before, from the far end.
-        let mirrored = kernel[1..].iter().rev().skip(1 - z.len % 2);
-        high.iter_mut().zip(mirrored).for_each(|(o, g)| *o = *o * *g);
+        weigh(engine, waves, out, |value, g| *value = *value * g);
     }
     if let Some([of_x, of_y, of_z]) = &wanted.phases {
         let here = of_x[waves[0]] * of_y[waves[1]];

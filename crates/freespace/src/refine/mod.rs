@@ -14,17 +14,21 @@ pub use interpolate::{Superposition, m4_prime, m6_star};
 pub use patch::Patch;
 
 use crate::error::FreeSpaceError;
-use crate::kernel::{BandPass, Gaussian, default_smoothing};
+use crate::kernel::{BandPass, Gaussian};
 use crate::mesh::Mesh;
 use crate::plan::{Output, Plan, Workspace};
 use interpolate::interpolate;
+
+/// Smoothing radius over the spacing: as in the paper. What a mesh finds must be smooth on its own scale to be
+/// interpolated, more than its sum must be as good as an integral.
+const SMOOTHING: f64 = 2.0;
 
 /// How meshes are refined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RefineParams {
     /// Order m of the kernels.
     pub order: usize,
-    /// Smoothing radius over the spacing of each mesh; `None` takes [`default_smoothing`].
+    /// Smoothing radius over the spacing of each mesh; `None` takes 2.
     pub smoothing: Option<f64>,
     /// Kernels of patches are cut off where they are below this part of their value at the origin.
     pub tolerance: f64,
@@ -79,7 +83,7 @@ impl<const D: usize> RefinedPlan<D> {
                 expected: "even, from 2 to 16",
             });
         }
-        let smoothing = params.smoothing.map_or_else(|| default_smoothing(params.order), Ok)?;
+        let smoothing = params.smoothing.unwrap_or(SMOOTHING);
         let coarsest = base.spacing().into_iter().fold(0.0, f64::max);
         let kernel = Gaussian::<D>::new(params.order, smoothing * coarsest)?;
         let plan = Plan::with_radial(base, &kernel)?;

@@ -2,6 +2,7 @@
 
 use meshless_freespace::Kernel;
 
+use super::patch_checks;
 use super::runs::Run;
 use super::{ORDERS, paper};
 use crate::verify::claims::Claims;
@@ -97,6 +98,7 @@ pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
         );
     }
     floors(runs, claims);
+    patch_checks::all(runs, options, claims);
 }
 
 fn find<'a>(runs: &'a [Run], case: &str, kernel: Kernel, n: usize) -> Option<&'a Run> {

@@ -1,6 +1,8 @@
 //! Suite `freespace`: the convergence tests of Hejlesen and Walther (2016), section 3, and a comparison with another code.
 
 mod checks;
+mod patch_checks;
+mod patches;
 mod problems;
 mod runs;
 mod sections;
@@ -19,7 +21,8 @@ const SUITE: &str = "freespace";
 pub(super) const ABOUT: &str = "Poisson's equation in free space: the bump in 2-D and the torus in 3-D of Hejlesen and Walther (2016) with Gaussian \
     kernels of order 2 to 20, the spectral and the truncated kernel; the product of bumps that another code was measured on.";
 
-pub(super) const CASES: [&str; 4] = ["bump", "torus", "product-2d", "product-3d"];
+pub(super) const CASES: [&str; 6] =
+    ["bump", "torus", "product-2d", "product-3d", patches::CASE, patches::SCALES];
 
 const METHOD: &str = "free-space";
 
@@ -27,6 +30,12 @@ const METHOD: &str = "free-space";
 const fn paper(order: usize) -> Kernel {
     Kernel::Gaussian { order, smoothing: Some(2.0) }
 }
+
+/// Orders that patches are tried with.
+const PATCH_ORDERS: [usize; 5] = [2, 4, 6, 8, 10];
+
+/// The order for a source with two scales.
+const SCALES_ORDER: usize = 10;
 
 /// Orders that are looked at.
 const ORDERS: [usize; 6] = [2, 4, 6, 8, 10, 20];
@@ -50,10 +59,41 @@ fn sizes(case: &str, effort: Effort) -> &'static [usize] {
     }
 }
 
+/// Cells of the base mesh in each direction, where there are patches.
+fn bases(effort: Effort) -> &'static [usize] {
+    if effort == Effort::Quick { &[64, 128] } else { &[64, 128, 256] }
+}
+
+/// Cells of the one mesh that the source with two scales is solved on.
+fn uniform_sizes(effort: Effort) -> &'static [usize] {
+    if effort == Effort::Quick { &[128, 256, 512, 1024] } else { &[128, 256, 512, 1024, 2048] }
+}
+
+fn refined(options: &Options) -> Vec<Result<Run, String>> {
+    let mut runs = Vec::new();
+    if options.wants(patches::CASE, METHOD) {
+        for layout in &patches::LAYOUTS {
+            for &n in bases(options.effort) {
+                progress(&format!("{SUITE} {} {} {n}", patches::CASE, layout.name));
+                runs.extend(PATCH_ORDERS.map(|order| patches::run(layout, order, n)));
+            }
+        }
+    }
+    if options.wants(patches::SCALES, METHOD) {
+        let sizes = uniform_sizes(options.effort);
+        progress(&format!("{SUITE} {}", patches::SCALES));
+        runs.extend(sizes.iter().map(|&n| patches::uniform(SCALES_ORDER, n)));
+        for &n in sizes.iter().filter(|n| **n >= 512) {
+            runs.extend(patches::LEVELS.map(|how| patches::refined(SCALES_ORDER, n / 8, how)));
+        }
+    }
+    runs
+}
+
 pub(super) fn run(options: &Options) -> Study {
     let mut claims = Claims::new(SUITE, options.is_filtered());
     let (mut runs, mut failures) = (Vec::new(), Vec::new());
-    for case in CASES.into_iter().filter(|case| options.wants(case, METHOD)) {
+    for case in CASES.into_iter().take(4).filter(|case| options.wants(case, METHOD)) {
         for &n in sizes(case, options.effort) {
             let done = match case {
                 "bump" => ladder(case, problems::patch(n)),
@@ -67,6 +107,12 @@ pub(super) fn run(options: &Options) -> Study {
                     Err(error) => failures.push(error),
                 }
             }
+        }
+    }
+    for outcome in refined(options) {
+        match outcome {
+            Ok(run) => runs.push(run),
+            Err(error) => failures.push(error),
         }
     }
     checks::all(&runs, options, &mut claims);

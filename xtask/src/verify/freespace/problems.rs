@@ -16,6 +16,45 @@ fn bump(q2: f64) -> [f64; 3] {
     [f, slope * f, f * (slope * slope * q2 + slope - 8.0 * C * q2 / u.powi(3))]
 }
 
+/// A bump of the stream function in the plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Field {
+    pub(super) height: f64,
+    pub(super) centre: [f64; 2],
+    pub(super) radius: f64,
+}
+
+/// A bump of height 1.
+pub(super) fn bump_at(centre: [f64; 2], radius: f64) -> Field {
+    Field { height: 1.0, centre, radius }
+}
+
+impl Field {
+    /// Offset from the centre over the radius, and the bump there.
+    fn at(&self, p: [f64; 2]) -> ([f64; 2], [f64; 3]) {
+        let q: [f64; 2] = std::array::from_fn(|a| (p[a] - self.centre[a]) / self.radius);
+        (q, bump(q[0] * q[0] + q[1] * q[1]))
+    }
+}
+
+/// Minus the Laplacian of a sum of bumps.
+pub(super) fn vorticity(bumps: &[Field], p: [f64; 2]) -> f64 {
+    let of = |b: &Field| {
+        let [_, slope, second] = b.at(p).1;
+        -b.height * (second + slope) / (b.radius * b.radius)
+    };
+    bumps.iter().map(of).sum()
+}
+
+/// Its curl.
+pub(super) fn velocity(bumps: &[Field], p: [f64; 2]) -> [f64; 2] {
+    bumps.iter().fold([0.0; 2], |sum, b| {
+        let (q, [_, slope, _]) = b.at(p);
+        let rate = b.height * slope / b.radius;
+        [sum[0] + rate * q[1], sum[1] - rate * q[0]]
+    })
+}
+
 /// Sources, what is asked for, and the fields that should come out.
 #[derive(Debug)]
 pub(super) struct Problem<const D: usize> {

@@ -15,6 +15,8 @@ use crate::verify::variant::Variant;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Run {
     pub(super) case: &'static str,
+    /// How the mesh is refined; empty where it is not.
+    pub(super) variant: &'static str,
     pub(super) kernel: Kernel,
     /// Points along the longest direction.
     pub(super) n: usize,
@@ -59,6 +61,7 @@ pub(super) fn run<const D: usize>(
     let [l2, linf, worst] = errors(&fields, &problem.exact);
     Ok(Run {
         case,
+        variant: "",
         kernel,
         n: problem.mesh.points().into_iter().max().unwrap_or(0),
         dimension: D,
@@ -91,7 +94,7 @@ pub(super) fn errors(fields: &[Vec<f64>], exact: &[Vec<f64>]) -> [f64; 3] {
 pub(super) fn outcome(run: &Run, runs: &[Run]) -> Outcome {
     let before = runs
         .iter()
-        .filter(|r| (r.case, r.kernel, r.dimension) == (run.case, run.kernel, run.dimension) && r.n < run.n)
+        .filter(|r| (r.case, r.variant, r.kernel) == (run.case, run.variant, run.kernel) && r.n < run.n)
         .max_by_key(|r| r.n);
     let rate = |error: fn(&Run) -> f64| {
         before.and_then(|b| order::between((b.spacing, error(b)), (run.spacing, error(run))))
@@ -101,7 +104,7 @@ pub(super) fn outcome(run: &Run, runs: &[Run]) -> Outcome {
         suite: super::SUITE,
         case: run.case,
         method: variant.method,
-        params: label(run.kernel),
+        params: [&label(run.kernel), run.variant].join("; ").trim_end_matches("; ").to_owned(),
         dimension: run.dimension,
         unknowns: run.points,
         spacing: run.spacing,

@@ -1,0 +1,109 @@
+//! What must hold with refinement patches.
+
+use super::patches::{CASE, SCALES};
+use super::runs::Run;
+use super::{PATCH_ORDERS, SCALES_ORDER, paper};
+use crate::verify::claims::Claims;
+use crate::verify::options::{Effort, Options};
+
+/// How far an observed order may be from that on one mesh.
+const ORDER_MARGIN: f64 = 0.05;
+
+/// Least order of M6*, whose error is of fifth order.
+const M6_ORDER: f64 = 4.5;
+
+/// How far from figures that have two digits.
+const TWO_DIGITS: [f64; 2] = [0.9, 1.1];
+
+/// Errors measured before with the same formulas: N0 = 256, orders 4, 6, 8, 10.
+const FIGURES: [(&str, [f64; 4]); 2] = [
+    ("one patch, shift", [3.7e-5, 2.8e-7, 4.5e-9, 1.4e-10]),
+    ("ratio 3, shift", [7.4e-6, 2.5e-8, 1.9e-10, 2.8e-12]),
+];
+
+pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
+    let sizes = super::bases(options.effort);
+    let (finest, before) = (sizes[sizes.len() - 1], sizes[sizes.len() - 2]);
+    let error = |name: &str, order: usize, n: usize| {
+        runs.iter()
+            .find(|r| r.case == CASE && r.variant == name && r.kernel == paper(order) && r.n == n)
+            .map(|r| r.l2)
+    };
+    let rate = |name: &str, order: usize| {
+        error(name, order, before)
+            .zip(error(name, order, finest))
+            .map(|(coarse, fine)| (coarse / fine).log2())
+    };
+    for order in PATCH_ORDERS {
+        let uniform = |n: usize| {
+            runs.iter().find(|r| r.case == "bump" && r.kernel == paper(order) && r.n == n).map(|r| r.l2)
+        };
+        let reference = uniform(before).zip(uniform(finest)).map(|(coarse, fine)| (coarse / fine).log2());
+        let difference =
+            rate("one patch, shift", order).zip(reference).map(|(patch, one)| (patch - one).abs());
+        let claim = format!("figure 5 (a), one patch, shift, m = {order}: order less that on one fine mesh");
+        claims.at_most(CASE, claim, difference, ORDER_MARGIN);
+        let ratio =
+            error("one patch, shift", order, finest).zip(uniform(finest)).map(|(patch, one)| patch / one);
+        claims.within(
+            CASE,
+            format!("m = {order}: one patch, shift, over the error of one fine mesh"),
+            ratio,
+            [0.98, 1.02],
+        );
+        for how in ["shift", "M6*"] {
+            let one = error(&format!("one patch, {how}"), order, finest);
+            let four = error(&format!("four patches, {how}"), order, finest);
+            let claim = format!("figure 6 (a), m = {order}, {how}: four bordering patches over one");
+            claims.within(CASE, claim, four.zip(one).map(|(four, one)| four / one), [0.99, 1.01]);
+        }
+    }
+    for order in [6, 8, 10] {
+        let claim = format!("figure 5 (b), one patch, M6*: order at m = {order}");
+        claims.at_least(CASE, claim, rate("one patch, M6*", order), M6_ORDER);
+    }
+    let lifted = error("one patch, ten points", 10, finest).zip(error("one patch, M6*", 10, finest));
+    claims.at_most(
+        CASE,
+        "polynomials through ten points lift the limit of M6*: error at m = 10 over that with M6*",
+        lifted.map(|(ten, six)| ten / six),
+        0.05,
+    );
+    if options.effort > Effort::Quick {
+        figures(&error, claims);
+    }
+    scales(runs, claims);
+}
+
+/// Figures at N0 = 256.
+fn figures(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Claims) {
+    for (name, figures) in FIGURES {
+        for (order, figure) in [4, 6, 8, 10].into_iter().zip(figures) {
+            let claim = format!("{name}, N0 = 256, m = {order}: error over {figure:.1e}, measured before");
+            claims.within(CASE, claim, error(name, order, 256).map(|e| e / figure), TWO_DIGITS);
+        }
+    }
+}
+
+/// What patches cost, and what they cannot do.
+fn scales(runs: &[Run], claims: &mut Claims) {
+    let finest = |name: &str| {
+        runs.iter()
+            .filter(|r| r.case == SCALES && r.variant == name && r.kernel == paper(SCALES_ORDER))
+            .max_by_key(|r| r.n)
+    };
+    let pair = finest("three levels, shift").zip(finest("uniform"));
+    // Patches add what the base mesh smooths, not what it samples wrongly: its points must resolve the source.
+    claims.at_least(
+        SCALES,
+        "limit: a base mesh with five cells on the radius aliases, and patches do not repair that: error over that of one mesh",
+        pair.map(|(p, u)| p.l2 / u.l2),
+        10.0,
+    );
+    claims.at_most(
+        SCALES,
+        "points with patches over those of that mesh",
+        pair.map(|(p, u)| p.points as f64 / u.points as f64),
+        0.3,
+    );
+}
