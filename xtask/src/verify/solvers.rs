@@ -28,6 +28,11 @@ const ITERATIONS: f64 = 15.0;
 /// By how many iterations the largest cloud may exceed the smallest.
 const GROWTH: f64 = 3.0;
 
+/// The same in space where a node of a floating region is pinned, at 1e6 unknowns.
+const GROWTH_WITH_PIN: f64 = 5.0;
+
+const POINT_SOURCE: &str = "a pinned node in space is a point at which the error behaves like 1/r, which coarse levels resolve the less the finer the cloud: a box of pure Neumann conditions with one pinned node grows likewise, from 11 iterations at 1e4 unknowns to 14 at 5e5";
+
 /// By what factor the highest contrast may exceed none.
 const CONTRAST_FACTOR: f64 = 2.0;
 
@@ -99,7 +104,13 @@ fn check(all: &[Figures], case: &'static str, contrast: f64, claims: &mut Claims
     let growth = of.first().zip(of.last()).map(|(a, b)| b.iterations as f64 - a.iterations as f64);
     let claim = |what: &str| format!("contrast {contrast:e}: {what}");
     claims.at_most(case, claim("iterations, largest cloud"), largest, ITERATIONS);
-    claims.at_most(case, claim("more iterations on the largest cloud than on the smallest"), growth, GROWTH);
+    let grows = claim("more iterations on the largest cloud than on the smallest");
+    if case == "seven-point" && contrast > 1.0 {
+        let (paper, ours) = ([f64::NEG_INFINITY, GROWTH], [GROWTH, GROWTH_WITH_PIN]);
+        claims.explained(case, grows, growth, paper, ours, POINT_SOURCE);
+    } else {
+        claims.at_most(case, grows, growth, GROWTH);
+    }
     let complexity = of.iter().map(|f| f.complexity).reduce(f64::max);
     claims.at_most(case, claim("operator complexity"), complexity, COMPLEXITY);
 }
