@@ -66,7 +66,10 @@ fn knows_slits(name: MethodName) -> bool {
 fn outpaces_multigrid(name: MethodName, survey: &Survey) -> bool {
     let named =
         matches!(name, MethodName::GfdmClassical | MethodName::GfdmPositive | MethodName::ImmersedInterface);
-    named && survey.contrast > FLOATING_CONTRAST
+    // Equations of jumps at interface points, and one-sided stencils at slits, have no diagonal to smooth with.
+    let indefinite =
+        name == MethodName::ParticleDifferenceExtended || survey.has(|e| matches!(e, Effect::Slits));
+    indefinite || (named && survey.contrast > FLOATING_CONTRAST)
 }
 
 pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknowns: f64) -> SolverParams {
