@@ -21,7 +21,7 @@ const fn example(name: &'static str, spacing: &'static str, l2: f64) -> Example 
 
 /// Bounds are about one and a half times what was measured: the error that a method of the order that `docs/` promises
 /// has at this spacing.
-const EXAMPLES: [Example; 17] = [
+const EXAMPLES: [Example; 19] = [
     example("ball", "0.16", 9e-3),
     example("chip", "0.1", 1.6e-2),
     example("crack", "0.08", 8e-3),
@@ -29,6 +29,7 @@ const EXAMPLES: [Example; 17] = [
     example("electrode", "0.08", 1.4e-2),
     Example { name: "head", spacing: "0.5", l2: None },
     example("inclusion", "0.08", 1.6e-2),
+    Example { name: "inclusions", spacing: "6", l2: None },
     example("l_shape", "0.016 + 0.2*sqrt(x^2 + y^2)", 2.5e-3),
     example("membrane", "0.08", 9e-3),
     example("pipe", "0.004", 1.5e-2),
@@ -36,6 +37,7 @@ const EXAMPLES: [Example; 17] = [
     example("quarter_tube", "0.12", 1.5e-2),
     Example { name: "quench", spacing: "1.5", l2: None },
     example("rings", "0.08", 1.5e-3),
+    example("shells", "6", 2.5e-2),
     example("smooth", "0.08", 6e-6),
     example("torsion", "0.08", 1e-12),
     example("wall", "0.016", 1.4e-2),

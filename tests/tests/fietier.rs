@@ -25,7 +25,7 @@ fn fields_that_are_linear_on_each_side_are_found_exactly() {
 fn three_shells_converge_with_more_than_second_order_on_any_particles() {
     for particles in [Particles::Lattice, Particles::Jittered(1), Particles::Scattered(2)] {
         let ladder = [8.0, 6.0, 4.5].map(|h| (h, error(&shells(h, particles))));
-        assert!(observed(&ladder) > 2.2 && ladder[2].1 < 0.02, "{particles:?}: {ladder:?}");
+        assert!(observed(&ladder) > 2.3 && ladder[2].1 < 9e-3, "{particles:?}: {ladder:?}");
     }
 }
 
@@ -37,5 +37,5 @@ fn two_inclusions_agree_with_the_reference() {
     let (error, size) = probes.iter().zip(REFERENCE).fold((0.0, 0.0), |(error, size), (probe, (_, u))| {
         (error + (probe.value.expect("a value") - u).powi(2), size + u * u)
     });
-    assert!((error / size).sqrt() < 1e-2, "{:e}", (error / size).sqrt());
+    assert!((error / size).sqrt() < 5e-3, "{:e}", (error / size).sqrt());
 }

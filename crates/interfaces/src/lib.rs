@@ -53,6 +53,7 @@ mod gradient;
 mod local;
 mod method;
 pub mod particle_difference;
+pub mod phase_field;
 mod problem;
 mod row_report;
 mod sample;
@@ -73,5 +74,6 @@ pub use sample::{Sample, SampleScratch, Sampler};
 pub use slit::{SlitCondition, SlitInterface};
 pub use surface_field::SurfaceField;
 pub use system::{
-    LinearSystem, PreparedSystem, SplitValues, SystemParams, SystemSolution, linear_system, solve,
+    LinearSystem, PreparedSystem, PseudoTimeParams, PseudoTimeSolution, SplitValues, SystemParams,
+    SystemSolution, linear_system, pseudo_time, solve,
 };

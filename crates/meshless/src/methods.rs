@@ -73,4 +73,11 @@ pub const METHODS: &[MethodInfo] = &[
                  order of the polynomials (`order`, even) at any contrast; no maximum principle, not conservative, \
                  steady scenes only",
     },
+    MethodInfo {
+        name: "surface-reaction",
+        order: "1 / 2",
+        dimensions: "1, 2, 3",
+        limits: "DC-PSE operators that see all regions, interfaces smeared over a width, jumps of the flux as sources: \
+                 regions may meet anyhow; first order where the diffusivity jumps; no jumps of u; for comparison",
+    },
 ];

@@ -3,6 +3,7 @@
 mod claims;
 mod cost;
 mod csv;
+mod dcpse;
 mod figure;
 mod freespace;
 mod gfdm;

@@ -131,7 +131,6 @@ mod tests {
         assert!(error("gdfm").contains("gfdm"));
         assert!(error("--case outerior").contains("interior"));
         assert!(error("--method none").contains("gfdm-hybrid"));
-        assert!(error("dcpse").contains("not built yet"));
         assert!(error("--threads 0").contains("positive"));
         assert!(error("--quick --full").contains("exclude"));
         assert!(error("--fast").contains("unknown option"));

@@ -72,6 +72,7 @@ pub(crate) struct Study {
 }
 
 impl Study {
+    #[cfg(test)]
     pub(crate) fn new(suite: &'static str) -> Self {
         Self { suite, outcomes: Vec::new(), claims: Vec::new(), sections: Vec::new() }
     }

@@ -19,6 +19,10 @@ pub(crate) struct Variant {
     pub(crate) visibility: Option<bool>,
     /// Order of the stencils.
     pub(crate) order: Option<usize>,
+    /// How fields are continued beyond interfaces.
+    pub(crate) ghosts: Option<&'static str>,
+    /// The diffusivity across a smeared interface, and the source that a jump of the flux becomes.
+    pub(crate) smeared: Option<(&'static str, &'static str)>,
 }
 
 impl Variant {
@@ -36,6 +40,8 @@ impl Variant {
             flux_weights: None,
             visibility: None,
             order: None,
+            ghosts: None,
+            smeared: None,
         }
     }
 
@@ -76,6 +82,9 @@ impl Variant {
         push("wedge", self.wedge.map(|w| format!("\"{w}\"")));
         push("flux_weights", self.flux_weights.map(|b| b.to_string()));
         push("visibility", self.visibility.map(|b| b.to_string()));
+        push("ghosts", self.ghosts.map(|g| format!("\"{g}\"")));
+        push("sigma", self.smeared.map(|s| format!("\"{}\"", s.0)));
+        push("reaction", self.smeared.map(|s| format!("\"{}\"", s.1)));
         table
     }
 
@@ -95,6 +104,8 @@ impl Variant {
         push(self.wedge.map(|w| format!("wedge={w}")));
         push(self.flux_weights.map(|b| format!("flux_weights={b}")));
         push(self.visibility.map(|b| format!("visibility={b}")));
+        push(self.ghosts.map(|g| format!("ghosts={g}")));
+        push(self.smeared.map(|(sigma, source)| format!("sigma={sigma}; reaction={source}")));
         params
     }
 
@@ -123,6 +134,12 @@ impl Variant {
                 label += &wedge.map_or_else(String::new, |w| format!(", {w} wedge"));
                 label += if weights == Some(false) { ", equal weights" } else { "" };
             }
+        }
+        if let Some(ghosts) = self.ghosts {
+            label += &format!(", {ghosts} images");
+        }
+        if let Some((sigma, source)) = self.smeared {
+            label += &format!(", {sigma} sigma, {source} source");
         }
         if self.conservative_neumann == Some(false) {
             label += ", strong Neumann";

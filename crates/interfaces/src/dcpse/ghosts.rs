@@ -1,13 +1,30 @@
 //! Which ghosts there are, and where to find them.
 
+use meshless_stencils::StencilError;
 use rayon::prelude::*;
 
 use super::constrained::{ConstrainedGhosts, Ghost, GhostScratch};
-use super::foot::foot;
+use super::foot::{Foot, foot};
+use super::image::ImageGhosts;
 use super::operators::Operators;
-use super::params::Ghosts;
+use super::params::{Ghosts, ImmersedParams};
 use crate::method::RowKind;
 use crate::{MethodError, Problem};
+
+/// Degree of the fits on the boundary where ghosts are made by image points.
+const BOUNDARY_DEGREE: usize = 2;
+
+/// Makes values beyond an interface.
+pub(super) trait GhostMaker<const D: usize>: Sync {
+    /// The field of region `own` at node q of region `other`, beyond the interface between them, whose foot is given.
+    fn across(
+        &self,
+        q: usize,
+        foot: &Foot<D>,
+        regions: [u16; 2],
+        scratch: &mut GhostScratch,
+    ) -> Result<Ghost, StencilError>;
+}
 
 /// Whether node j may take part in the operator at node i: a node of the same region beyond another region may not, and
 /// neither may its value be continued, since the nearest interface there is another one.
@@ -40,30 +57,34 @@ impl GhostTable {
     /// Makes all ghosts that the operators ask for, in parallel.
     pub(super) fn build<const D: usize>(
         problem: &Problem<'_, D>,
-        kind: &Ghosts,
+        params: &ImmersedParams,
         kinds: &[RowKind],
         operators: &Operators,
     ) -> Result<Self, MethodError> {
         let (keys, rows) = keys(problem, kinds, operators);
-        let Ghosts::Constrained { degree } = *kind;
-        let maker = ConstrainedGhosts::new(problem, degree)?;
+        let degree = match params.ghosts {
+            Ghosts::Constrained { degree } => degree,
+            // Nodes lie on the boundary: there is nothing beyond it to be mirrored.
+            Ghosts::Image(_) => BOUNDARY_DEGREE,
+        };
+        let fits = ConstrainedGhosts::new(problem, degree, params.unsteady)?;
+        let images = match params.ghosts {
+            Ghosts::Constrained { .. } => None,
+            Ghosts::Image(interpolation) => Some(ImageGhosts::new(problem, interpolation)?),
+        };
+        let maker: &dyn GhostMaker<D> = match &images {
+            Some(images) => images,
+            None => &fits,
+        };
         let ghosts: Vec<Result<Ghost, MethodError>> = keys
             .par_iter()
             .map_init(GhostScratch::default, |scratch, &(q, own)| {
-                across(problem, &maker, q as usize, own, scratch)
-            })
-            .collect();
-        let nodes = problem.cloud.boundary();
-        let boundary: Vec<Result<(u32, Ghost), MethodError>> = (0..nodes.len())
-            .into_par_iter()
-            .filter(|&index| kinds[nodes[index].node as usize] == RowKind::StrongBoundary)
-            .map_init(GhostScratch::default, |scratch, index| {
-                Ok((nodes[index].node, on_boundary(problem, &maker, index, scratch)?))
+                across(problem, maker, q as usize, own, scratch)
             })
             .collect();
         // Which node an error names must not depend on which thread was faster.
         let ghosts = ghosts.into_iter().collect::<Result<_, _>>()?;
-        let boundary = boundary.into_iter().collect::<Result<_, _>>()?;
+        let boundary = on_boundary(problem, &fits, kinds)?;
         Ok(Self { keys, ghosts, boundary, rows })
     }
 
@@ -115,7 +136,7 @@ fn keys<const D: usize>(
 
 fn across<const D: usize>(
     problem: &Problem<'_, D>,
-    maker: &ConstrainedGhosts<'_, D>,
+    maker: &dyn GhostMaker<D>,
     q: usize,
     own: u16,
     scratch: &mut GhostScratch,
@@ -124,10 +145,27 @@ fn across<const D: usize>(
     let Some((foot, other)) = foot(problem, q, own) else {
         return Err(MethodError::NoFoot { node: q, position: x.to_vec(), region: own });
     };
-    maker.across(x, &foot, [own, other], scratch).map_err(|source| MethodError::stencil(q, x, source))
+    maker.across(q, &foot, [own, other], scratch).map_err(|source| MethodError::stencil(q, x, source))
 }
 
-fn on_boundary<const D: usize>(
+/// The values at the boundary nodes that no value is prescribed at, in order.
+pub(super) fn on_boundary<const D: usize>(
+    problem: &Problem<'_, D>,
+    maker: &ConstrainedGhosts<'_, D>,
+    kinds: &[RowKind],
+) -> Result<Vec<(u32, Ghost)>, MethodError> {
+    let nodes = problem.cloud.boundary();
+    let found: Vec<Result<(u32, Ghost), MethodError>> = (0..nodes.len())
+        .into_par_iter()
+        .filter(|&index| kinds[nodes[index].node as usize] == RowKind::StrongBoundary)
+        .map_init(GhostScratch::default, |scratch, index| {
+            Ok((nodes[index].node, boundary_value(problem, maker, index, scratch)?))
+        })
+        .collect();
+    found.into_iter().collect()
+}
+
+fn boundary_value<const D: usize>(
     problem: &Problem<'_, D>,
     maker: &ConstrainedGhosts<'_, D>,
     index: usize,

@@ -9,8 +9,10 @@
 mod constrained;
 mod foot;
 mod ghosts;
+mod image;
 mod operators;
 mod params;
+mod reaction;
 mod sides;
 
 use std::time::Instant;
@@ -22,7 +24,8 @@ use crate::{MethodError, Problem};
 use constrained::Ghost;
 use ghosts::GhostTable;
 use operators::Operators;
-pub use params::{Ghosts, ImmersedParams};
+pub use params::{Ghosts, ImmersedParams, Interpolation};
+pub use reaction::{Indicators, ReactionParams, ReactionSource, Share, Sigma, Smoothing, SurfaceReaction};
 
 /// The immersed interface method.
 #[derive(Debug, Clone, Copy, Default)]
@@ -40,9 +43,10 @@ impl<const D: usize> Method<D> for ImmersedInterface {
         let mut kinds = kinds(problem, &known);
         let collocated = |i: usize| kinds[i] == RowKind::Strong;
         let sees = |i: usize, j: usize| ghosts::sees(problem, i, j);
+        let degree = params::operator_degree(self.params.order);
         let operators =
-            Operators::compute(problem, params::operator_degree(self.params.order), collocated, sees)?;
-        let table = GhostTable::build(problem, &self.params.ghosts, &kinds, &operators)?;
+            Operators::compute(problem, degree, |i| operators::diffusion(problem, i), collocated, sees)?;
+        let table = GhostTable::build(problem, &self.params, &kinds, &operators)?;
         let stencil_seconds = start.elapsed().as_secs_f64();
         let counts = Counts {
             stencils: kinds.iter().filter(|k| **k != RowKind::Dirichlet).count() + table.len(),

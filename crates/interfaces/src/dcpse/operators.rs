@@ -1,4 +1,4 @@
-//! DC-PSE operators of `div(eta grad u)` at all nodes, each with the diffusivity of its own region.
+//! DC-PSE operators at all nodes: of `div(eta grad u)` with the diffusivity of the node's own region, or any others.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -20,16 +20,17 @@ pub(super) struct Operators {
 }
 
 impl Operators {
-    /// Operators of a degree at the nodes for which `wanted` holds. A coefficient is zero where `sees(i, j)` does not
-    /// hold: such a neighbour takes no part.
+    /// Operators `functional(i)` of a degree at the nodes for which `wanted` holds. A coefficient is zero where
+    /// `sees(i, j)` does not hold: such a neighbour takes no part.
     pub(super) fn compute<const D: usize>(
         problem: &Problem<'_, D>,
         degree: usize,
+        functional: impl Fn(usize) -> Functional<D> + Sync,
         wanted: impl Fn(usize) -> bool + Sync,
         sees: impl Fn(usize, usize) -> bool + Sync,
     ) -> Result<Self, MethodError> {
         let fit = LocalFit::<D>::new(FitParams { degree, through_centre: true, ..FitParams::default() });
-        let operator = Operator { problem, fit, sees };
+        let operator = Operator { problem, fit, functional, sees };
         let enlarged = Mutex::new(BTreeMap::new());
         let values = SupportValues::compute(
             problem.supports.lists,
@@ -71,9 +72,17 @@ impl Operators {
     }
 }
 
-struct Operator<'a, const D: usize, S> {
+/// `div(eta grad u)` at a node, with the diffusivity of its own region.
+pub(super) fn diffusion<const D: usize>(problem: &Problem<'_, D>, i: usize) -> Functional<D> {
+    let material = &problem.materials[problem.labels[i] as usize];
+    let (x, spacing) = (&problem.cloud.points()[i], problem.cloud.spacing()[i]);
+    Functional::Diffusion { eta: problem.eta[i], gradient: foot::gradient(&material.diffusivity, x, spacing) }
+}
+
+struct Operator<'a, const D: usize, F, S> {
     problem: &'a Problem<'a, D>,
     fit: LocalFit<D>,
+    functional: F,
     sees: S,
 }
 
@@ -86,7 +95,11 @@ struct Scratch<const D: usize> {
     coefficients: Vec<f64>,
 }
 
-impl<const D: usize, S: Fn(usize, usize) -> bool + Sync> Operator<'_, D, S> {
+impl<const D: usize, F, S> Operator<'_, D, F, S>
+where
+    F: Fn(usize) -> Functional<D> + Sync,
+    S: Fn(usize, usize) -> bool + Sync,
+{
     fn scratch(&self) -> Scratch<D> {
         let most = self.problem.supports.lists.max_count();
         Scratch {
@@ -122,14 +135,11 @@ impl<const D: usize, S: Fn(usize, usize) -> bool + Sync> Operator<'_, D, S> {
             reach = reach.max(squared.sqrt());
         }
         let reach = if reach > 0.0 { reach } else { width };
-        let material = &self.problem.materials[self.problem.labels[i] as usize];
-        let eta = self.problem.eta[i];
-        let gradient = foot::gradient(&material.diffusivity, &points[i], self.problem.cloud.spacing()[i]);
         coefficients.clear();
         coefficients.resize(places.len(), 0.0);
         self.fit
             .factor(offsets, weights, reach, fit)
-            .and_then(|_| self.fit.coefficients(&Functional::Diffusion { eta, gradient }, fit, coefficients))
+            .and_then(|_| self.fit.coefficients(&(self.functional)(i), fit, coefficients))
             .map_err(|source| MethodError::stencil(i, &points[i], source))?;
         places.iter().zip(coefficients).for_each(|(&place, c)| out[place] = *c);
         Ok(())

@@ -4,6 +4,7 @@ mod floating;
 mod given;
 mod linear;
 mod prepared;
+mod pseudo_time;
 
 use meshless_sparse::{SolveInfo, SolverParams, Split};
 
@@ -12,6 +13,7 @@ use floating::Floating;
 pub(crate) use floating::FloatingParts;
 pub use linear::{LinearSystem, linear_system};
 pub use prepared::PreparedSystem;
+pub use pseudo_time::{PseudoTimeParams, PseudoTimeSolution, pseudo_time};
 
 /// Part of sources and fluxes that may be left over in a pure Neumann problem, relative to their size: a scene that
 /// balances does so up to the discretisation error of its integrals.

@@ -73,6 +73,14 @@ impl<const D: usize> Setup<D> {
         Self::new(domain, cloud)
     }
 
+    /// Another radius of interaction, in spacings.
+    pub(crate) fn with_support(mut self, support: f64) -> Self {
+        self.radius = self.cloud.spacing().iter().map(|s| support * s).collect();
+        self.lists =
+            within_radius(self.cloud.points(), Radius::PerPoint(&self.radius), Distance::D2).unwrap();
+        self
+    }
+
     /// Regions by shapes, the background last, each with a constant diffusivity.
     pub(crate) fn regions(mut self, shapes: Vec<Option<Shape<D>>>, eta: &[f64]) -> Self {
         self.regions = RegionMap::new(shapes).unwrap();

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use meshless_geometry::{Cloud, CloudParams, Domain, RegionMap, generate};
+use meshless_interfaces::phase_field::{PhaseFieldParams, regions_from_labels};
 use meshless_interfaces::{
     BoundaryData, Condition, InterfaceJump, Material, MethodError, Problem, SlitInterface, Supports,
 };
@@ -48,7 +49,7 @@ impl<const D: usize> Discrete<D> {
         progress.stage(Stage::Points);
         let start = Instant::now();
         let domain = build::domain::<D>(scene)?;
-        let regions = build::regions::<D>(scene)?;
+        let mut regions = build::regions::<D>(scene)?;
         let params = CloudParams {
             spacing: build::spacing::<D>(scene),
             layout: build::layout(scene),
@@ -74,6 +75,11 @@ impl<const D: usize> Discrete<D> {
         } else {
             vec![0; cloud.len()]
         };
+        if plan.runs(Stage::PhaseField) {
+            progress.stage(Stage::PhaseField);
+            let params = PhaseFieldParams::default();
+            (regions, _) = regions_from_labels(&cloud, &lists, &labels, scene.regions.len(), &params)?;
+        }
         let materials = build::materials::<D>(scene);
         let eta = build::nodal_diffusivity(scene, &materials, cloud.points(), &labels)?;
         let source = plan

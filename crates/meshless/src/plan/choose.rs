@@ -5,7 +5,7 @@ use meshless_sparse::{MultigridParams, PreconditionerKind, SolverKind, SolverPar
 use super::effects::{Effect, Survey};
 use super::{MethodParams, MethodPlan, Skipped, Stage, method};
 use crate::Error;
-use crate::scene::{MethodName, Scene, SolverName};
+use crate::scene::{InterfacesName, MethodName, Scene, SolverName};
 
 /// Interaction radius in units of the spacing, by dimension: about 6, 27 and 45 neighbours. Not a distance that
 /// occurs in a lattice, where round-off would decide who is a neighbour.
@@ -111,6 +111,10 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(true, Stage::Points, "");
     decide(true, Stage::Neighbors, "");
     decide(scene.regions.len() > 1, Stage::Regions, "there is one region");
+    // Not listed among what is skipped: hardly a scene asks for it.
+    if scene.method.options.interfaces == Some(InterfacesName::Labels) {
+        decide(scene.regions.len() > 1, Stage::PhaseField, "there is one region");
+    }
     decide(variable, Stage::Diffusivity, "the diffusivity is one constant");
     decide(survey.has(|e| matches!(e, Effect::Source)), Stage::Source, "the scene has no source");
     decide(

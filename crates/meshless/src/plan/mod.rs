@@ -59,6 +59,8 @@ pub enum Stage {
     Neighbors,
     /// Find the region of every node.
     Regions,
+    /// Find interfaces from the regions of the nodes alone, by a phase field.
+    PhaseField,
     /// Evaluate the diffusivity at the nodes.
     Diffusivity,
     /// Evaluate the source at the nodes.

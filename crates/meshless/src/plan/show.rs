@@ -13,6 +13,7 @@ impl Stage {
             Self::Points => "points",
             Self::Neighbors => "neighbour lists",
             Self::Regions => "regions",
+            Self::PhaseField => "phase field",
             Self::Diffusivity => "nodal diffusivity",
             Self::Source => "source",
             Self::LaplacianStencils => "Laplacian stencils",

@@ -3,8 +3,11 @@
 use meshless_expr::nearest_name;
 
 use super::error::SceneError;
+use super::options::{
+    GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
+};
 use super::reader::{Table, Value};
-use super::spec::{MethodName, MethodOptions, MethodSpec, SolverName, WedgeName, WeightName};
+use super::spec::{MethodName, MethodSpec, SolverName};
 
 /// Lowest and highest polynomial degree of stencils.
 const ORDERS: [u64; 2] = [2, 8];
@@ -15,8 +18,11 @@ const SHARP_ORDERS: [u64; 2] = [4, 16];
 /// Most smoothing cycles; the diffusivity is flat long before.
 const MAX_SMOOTHING: u64 = 100;
 
+/// Largest width over which an interface is smeared, in spacings.
+const MAX_WIDTH: f64 = 10.0;
+
 /// Methods by name.
-const METHODS: [(&str, MethodName); 9] = [
+const METHODS: [(&str, MethodName); 10] = [
     ("auto", MethodName::Auto),
     ("gfdm-classical", MethodName::GfdmClassical),
     ("gfdm-conservative", MethodName::GfdmConservative),
@@ -26,10 +32,11 @@ const METHODS: [(&str, MethodName); 9] = [
     ("particle-difference-extended", MethodName::ParticleDifferenceExtended),
     ("immersed-interface", MethodName::ImmersedInterface),
     ("sharp", MethodName::Sharp),
+    ("surface-reaction", MethodName::SurfaceReaction),
 ];
 
 /// Methods that are recognised and not built.
-const FUTURE_METHODS: [&str; 2] = ["surface-reaction", "free-space"];
+const FUTURE_METHODS: [&str; 1] = ["free-space"];
 
 /// Solvers by name.
 const SOLVERS: [(&str, SolverName); 5] = [
@@ -47,6 +54,31 @@ const WEIGHTS: [(&str, WeightName); 2] =
 /// Wedges by name.
 const WEDGES: [(&str, WedgeName); 3] =
     [("quadratic", WedgeName::Quadratic), ("plane", WedgeName::Plane), ("varying", WedgeName::Varying)];
+
+/// Ghosts by name.
+const GHOSTS: [(&str, GhostsName); 5] = [
+    ("constrained", GhostsName::Constrained),
+    ("linear", GhostsName::Linear),
+    ("trilinear", GhostsName::Trilinear),
+    ("quadratic", GhostsName::Quadratic),
+    ("cubic", GhostsName::Cubic),
+];
+
+/// Smoothings of indicators by name.
+const KERNELS: [(&str, KernelName); 2] =
+    [("convolution", KernelName::Convolution), ("diffusion", KernelName::Diffusion)];
+
+/// Diffusivities across an interface by name.
+const SIGMAS: [(&str, SigmaName); 3] =
+    [("harmonic", SigmaName::Harmonic), ("arithmetic", SigmaName::Arithmetic), ("sharp", SigmaName::Sharp)];
+
+/// Sources at interfaces by name.
+const REACTIONS: [(&str, ReactionName); 2] =
+    [("operator", ReactionName::Operator), ("smoothed", ReactionName::Smoothed)];
+
+/// Where interfaces are from, by name.
+const INTERFACES: [(&str, InterfacesName); 2] =
+    [("shapes", InterfacesName::Shapes), ("labels", InterfacesName::Labels)];
 
 /// Methods with stencils in strong form.
 const STRONG: &[MethodName] = &[MethodName::GfdmClassical, MethodName::GfdmPositive, MethodName::GfdmHybrid];
@@ -70,14 +102,19 @@ const EVERY: &[MethodName] = &[
     MethodName::ParticleDifferenceExtended,
     MethodName::ImmersedInterface,
     MethodName::Sharp,
+    MethodName::SurfaceReaction,
 ];
 /// Methods whose stencils know interfaces.
 const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
 /// Methods that continue values over interfaces by a wedge.
 const WEDGED: &[MethodName] = &[MethodName::ParticleDifference, MethodName::ParticleDifferenceExtended];
+/// Methods that continue fields beyond interfaces.
+const IMMERSED: &[MethodName] = &[MethodName::ImmersedInterface];
+/// Methods that smear interfaces.
+const REACTION: &[MethodName] = &[MethodName::SurfaceReaction];
 
-/// Options and the methods that have them; none of the methods that are built has the last ones.
-const OPTIONS: [(&str, &[MethodName]); 13] = [
+/// Options and the methods that have them.
+const OPTIONS: [(&str, &[MethodName]); 16] = [
     ("smoothing", STRONG),
     ("log_scaling", STRONG),
     ("correction", STRONG),
@@ -88,9 +125,12 @@ const OPTIONS: [(&str, &[MethodName]); 13] = [
     ("wedge", WEDGED),
     ("flux_weights", PARTICLE),
     ("visibility", PARTICLE),
-    ("ghosts", &[]),
-    ("kernel", &[]),
-    ("sigma", &[]),
+    ("ghosts", IMMERSED),
+    ("kernel", REACTION),
+    ("sigma", REACTION),
+    ("reaction", REACTION),
+    ("width", REACTION),
+    ("interfaces", EVERY),
 ];
 
 pub(super) fn method(root: &Table<'_>) -> Result<MethodSpec, SceneError> {
@@ -149,6 +189,12 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         weight: table.get("weight").map(|value| value.one_of(&WEIGHTS)).transpose()?,
         flux_weights: flag("flux_weights")?,
         visibility: flag("visibility")?,
+        ghosts: table.get("ghosts").map(|value| value.one_of(&GHOSTS)).transpose()?,
+        kernel: table.get("kernel").map(|value| value.one_of(&KERNELS)).transpose()?,
+        sigma: table.get("sigma").map(|value| value.one_of(&SIGMAS)).transpose()?,
+        reaction: table.get("reaction").map(|value| value.one_of(&REACTIONS)).transpose()?,
+        width: table.get("width").map(|value| width(&value)).transpose()?,
+        interfaces: table.get("interfaces").map(|value| value.one_of(&INTERFACES)).transpose()?,
         wedge: table.get("wedge").map(|value| value.one_of(&WEDGES)).transpose()?,
     })
 }
@@ -177,6 +223,16 @@ fn support(value: &Value<'_>) -> Result<f64, SceneError> {
         radius => {
             let help = "the radius is in units of the spacing";
             Err(value.error(format!("expected a number above 1, found {radius}"), help))
+        }
+    }
+}
+
+fn width(value: &Value<'_>) -> Result<f64, SceneError> {
+    match value.number()? {
+        width if width > 0.0 && width <= MAX_WIDTH => Ok(width),
+        width => {
+            let help = format!("the width is in units of the spacing, at most {MAX_WIDTH}");
+            Err(value.error(format!("expected a positive number, found {width}"), help))
         }
     }
 }

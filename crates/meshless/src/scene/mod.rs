@@ -13,6 +13,7 @@ mod domain;
 mod error;
 mod expression;
 mod method;
+mod options;
 mod reader;
 mod regions;
 mod root;
@@ -30,11 +31,14 @@ use std::sync::Arc;
 pub use error::SceneError;
 pub use expression::ExprField;
 pub use method::MethodNameError;
+pub use options::{
+    GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
+};
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
-    MethodOptions, MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec,
-    SlitSpec, SolverName, WedgeName, WeightName,
+    MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec, SlitSpec,
+    SolverName,
 };
 
 pub use time::TimeSpec;

@@ -1,6 +1,7 @@
 //! The parts of a scene.
 
 use super::expression::ExprField;
+use super::options::MethodOptions;
 use super::source::Place;
 
 /// Faces of a box, two an axis.
@@ -277,6 +278,8 @@ pub enum MethodName {
     ImmersedInterface,
     /// `sharp`
     Sharp,
+    /// `surface-reaction`
+    SurfaceReaction,
 }
 
 /// Linear solvers.
@@ -293,52 +296,6 @@ pub enum SolverName {
     Gmres,
     /// `multigrid`
     Multigrid,
-}
-
-/// Weight functions of least-squares stencils.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WeightName {
-    /// `quartic`
-    Quartic,
-    /// `exponential`
-    Exponential,
-}
-
-/// How the other side of an interface continues this one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WedgeName {
-    /// `plane`
-    Plane,
-    /// `varying`
-    Varying,
-    /// `quadratic`
-    Quadratic,
-}
-
-/// Options of single methods (Kraus et al. 2022, "A meshfree point collocation method for elliptic interface
-/// problems"; Yoon & Song 2021, "Interface Immersed Particle Difference Method").
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct MethodOptions {
-    /// Smoothing cycles of the diffusivity.
-    pub smoothing: Option<usize>,
-    /// Work with log eta.
-    pub log_scaling: Option<bool>,
-    /// Correct stencils towards diagonal dominance.
-    pub correction: Option<bool>,
-    /// Boundary conditions on the flux by cell balances.
-    pub conservative_neumann: Option<bool>,
-    /// Support radius in units of the spacing, above 1.
-    pub support: Option<f64>,
-    /// Diagonal-dominance error above which a node gets a conservative row, not negative.
-    pub selection_tolerance: Option<f64>,
-    /// Weight of neighbours by their distance.
-    pub weight: Option<WeightName>,
-    /// The other side of an interface.
-    pub wedge: Option<WedgeName>,
-    /// Values beyond a stiff side count less.
-    pub flux_weights: Option<bool>,
-    /// Nodes do not see through slits.
-    pub visibility: Option<bool>,
 }
 
 /// What to write besides the report; nothing, if the scene does not say.

@@ -1,10 +1,12 @@
 //! DC-PSE methods in plans.
 
-use meshless_interfaces::dcpse::{Ghosts, ImmersedParams};
+use meshless_interfaces::dcpse::{
+    Ghosts, ImmersedParams, Interpolation, ReactionParams, ReactionSource, Sigma, Smoothing,
+};
 
 use super::Steps;
 use crate::plan::effects::Survey;
-use crate::scene::Scene;
+use crate::scene::{GhostsName, KernelName, ReactionName, Scene, SigmaName};
 
 /// Interaction radius in units of the spacing for operators of second order, by dimension: about 6, 26 and 57
 /// neighbours, also where nodes are moved by half a spacing.
@@ -16,7 +18,37 @@ const SUPPORT_PER_ORDER: f64 = 0.5;
 pub(super) fn immersed(scene: &Scene) -> ImmersedParams {
     let chosen = ImmersedParams::default();
     let order = scene.method.order.unwrap_or(chosen.order);
-    ImmersedParams { order, ghosts: Ghosts::Constrained { degree: order } }
+    let complete = |degree| Ghosts::Image(Interpolation::Complete { degree });
+    let ghosts = match scene.method.options.ghosts {
+        None | Some(GhostsName::Constrained) => Ghosts::Constrained { degree: order },
+        Some(GhostsName::Linear) => complete(1),
+        Some(GhostsName::Trilinear) => Ghosts::Image(Interpolation::Trilinear),
+        Some(GhostsName::Quadratic) => complete(2),
+        Some(GhostsName::Cubic) => complete(3),
+    };
+    ImmersedParams { order, ghosts, unsteady: scene.time.is_some() }
+}
+
+pub(super) fn reaction(scene: &Scene) -> ReactionParams {
+    let (options, chosen) = (&scene.method.options, ReactionParams::default());
+    ReactionParams {
+        order: scene.method.order.unwrap_or(chosen.order),
+        smoothing: options.kernel.map_or(chosen.smoothing, |name| match name {
+            KernelName::Convolution => Smoothing::Convolution,
+            KernelName::Diffusion => Smoothing::Diffusion,
+        }),
+        width: options.width.unwrap_or(chosen.width),
+        sigma: options.sigma.map_or(chosen.sigma, |name| match name {
+            SigmaName::Harmonic => Sigma::Harmonic,
+            SigmaName::Arithmetic => Sigma::Arithmetic,
+            SigmaName::Sharp => Sigma::Sharp,
+        }),
+        source: options.reaction.map_or(chosen.source, |name| match name {
+            ReactionName::Operator => ReactionSource::Operator,
+            ReactionName::Smoothed => ReactionSource::Smoothed,
+        }),
+        unsteady: scene.time.is_some(),
+    }
 }
 
 pub(super) fn support(dimension: usize, order: usize) -> f64 {
@@ -29,6 +61,17 @@ pub(super) fn steps(survey: &Survey) -> Steps {
         no_stencils: "",
         selection: false,
         constrained: Some(survey.has_interface()),
+        cells: 0.0,
+        may_need_cells: false,
+    }
+}
+
+pub(super) fn reaction_steps() -> Steps {
+    Steps {
+        stencils: true,
+        no_stencils: "",
+        selection: false,
+        constrained: None,
         cells: 0.0,
         may_need_cells: false,
     }

@@ -6,7 +6,7 @@ mod particle_difference;
 mod sharp;
 
 use meshless_interfaces::Method;
-use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams};
+use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams, ReactionParams, SurfaceReaction};
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
 use meshless_interfaces::particle_difference::{
     ParticleDifference, ParticleDifferenceExtended, ParticleDifferenceParams,
@@ -30,6 +30,8 @@ pub enum MethodParams {
     ImmersedInterface(ImmersedParams),
     /// Sharp fits of high order.
     Sharp(SharpParams),
+    /// DC-PSE operators with smeared interfaces.
+    SurfaceReaction(ReactionParams),
 }
 
 /// What a method builds; decides its stages and what they are expected to cost.
@@ -67,6 +69,7 @@ impl MethodParams {
             }
             MethodName::ImmersedInterface => Self::ImmersedInterface(dcpse::immersed(scene)),
             MethodName::Sharp => Self::Sharp(sharp::params(scene)),
+            MethodName::SurfaceReaction => Self::SurfaceReaction(dcpse::reaction(scene)),
             _ => Self::Gfdm(gfdm::params(name, scene, survey)),
         }
     }
@@ -81,6 +84,7 @@ impl MethodParams {
             }
             Self::ImmersedInterface(params) => Box::new(ImmersedInterface { params: *params }),
             Self::Sharp(params) => Box::new(Sharp { params: *params }),
+            Self::SurfaceReaction(params) => Box::new(SurfaceReaction { params: *params }),
         }
     }
 
@@ -91,6 +95,7 @@ impl MethodParams {
             Self::ParticleDifference(params) | Self::ParticleDifferenceExtended(params) => params.degree,
             Self::ImmersedInterface(params) => params.order,
             Self::Sharp(params) => params.order,
+            Self::SurfaceReaction(params) => params.order,
         }
     }
 
@@ -105,7 +110,7 @@ impl MethodParams {
     /// Order at which the error in u falls where something jumps at an interface.
     pub fn interface_order(&self) -> usize {
         match self {
-            Self::Gfdm(_) | Self::ParticleDifferenceExtended(_) => 1,
+            Self::Gfdm(_) | Self::ParticleDifferenceExtended(_) | Self::SurfaceReaction(_) => 1,
             Self::ParticleDifference(_) | Self::ImmersedInterface(_) => 2,
             Self::Sharp(params) => params.order,
         }
@@ -119,13 +124,15 @@ impl MethodParams {
             }
             Self::ImmersedInterface(_) => dcpse::steps(survey),
             Self::Sharp(_) => sharp::steps(survey),
+            Self::SurfaceReaction(_) => dcpse::reaction_steps(),
         }
     }
 
     /// Interaction radius in units of the spacing that the method wants; `None` for the common one.
     pub(super) fn support(&self, dimension: usize) -> Option<f64> {
         match self {
-            Self::ImmersedInterface(params) => Some(dcpse::support(dimension, params.order)),
+            Self::ImmersedInterface(ImmersedParams { order, .. })
+            | Self::SurfaceReaction(ReactionParams { order, .. }) => Some(dcpse::support(dimension, *order)),
             Self::Gfdm(_)
             | Self::ParticleDifference(_)
             | Self::ParticleDifferenceExtended(_)

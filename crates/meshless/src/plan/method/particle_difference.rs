@@ -22,11 +22,15 @@ pub(super) fn params(scene: &Scene) -> ParticleDifferenceParams {
         flux_weights: options.flux_weights.unwrap_or(chosen.flux_weights),
         visibility: options.visibility.unwrap_or(chosen.visibility),
         enrichment: chosen.enrichment,
-        wedge: options.wedge.map_or(chosen.wedge, |name| match name {
-            WedgeName::Plane => Wedge::Plane,
-            WedgeName::Varying => Wedge::Varying,
-            WedgeName::Quadratic => Wedge::Quadratic,
-        }),
+        // The second derivative at an interface would follow from the steady equation: with a du/dt it is not known.
+        wedge: options.wedge.map_or(
+            if scene.time.is_some() { Wedge::Varying } else { chosen.wedge },
+            |name| match name {
+                WedgeName::Plane => Wedge::Plane,
+                WedgeName::Varying => Wedge::Varying,
+                WedgeName::Quadratic => Wedge::Quadratic,
+            },
+        ),
     }
 }
 

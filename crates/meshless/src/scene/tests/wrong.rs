@@ -310,7 +310,13 @@ fn method() {
                 "not below 0",
                 "",
             ),
-            wrong("smoothing = 1", "kernel = «\"gauss\"»", "method.kernel", "not supported yet", ""),
+            wrong(
+                "smoothing = 1",
+                "kernel = «\"gauss\"»",
+                "method.kernel",
+                "has no option `kernel`",
+                "surface-reaction",
+            ),
             wrong(
                 "smoothing = 1",
                 "log_scaling = «\"yes\"»",

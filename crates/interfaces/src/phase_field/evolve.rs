@@ -1,0 +1,129 @@
+//! The field of one region through time, and when to stop.
+
+use meshless_geometry::Cloud;
+use rayon::prelude::*;
+
+use super::derivatives::Derivatives;
+use super::{PhaseFieldInfo, PhaseFieldParams, PhaseFieldStop};
+
+/// Share of the largest stable step that is taken.
+const STEP: f64 = 0.5;
+
+/// Steps between two looks at drift and profile.
+const STEPS_PER_LOOK: usize = 5;
+
+/// Largest |psi| that is turned into a distance.
+const SATURATED: f64 = 0.9999;
+
+/// Nodes with |psi| below this tell how good the profile is.
+const NEAR: f64 = 0.9;
+
+/// A look at which the defect of the profile has not fallen by this share ends the run.
+const LEAST_GAIN: f64 = 0.01;
+
+/// The distance from the surface of a region at every node, negative inside, and how it came about.
+pub(super) fn evolve<const D: usize>(
+    cloud: &Cloud<D>,
+    derivatives: &Derivatives<'_, D>,
+    labels: &[u16],
+    region: u16,
+    params: &PhaseFieldParams,
+) -> (Vec<f64>, PhaseFieldInfo) {
+    let start: Vec<f64> = labels.iter().map(|&l| if l == region { 1.0 } else { -1.0 }).collect();
+    let run = Run { cloud, derivatives, width: params.width };
+    let time_step = run.time_step();
+    let mut psi = start.clone();
+    let mut kept = (
+        psi.clone(),
+        PhaseFieldInfo { steps: 0, drift: 0.0, defect: f64::INFINITY, stop: PhaseFieldStop::Steps },
+    );
+    while kept.1.steps < params.max_steps {
+        let steps = STEPS_PER_LOOK.min(params.max_steps - kept.1.steps);
+        (0..steps).for_each(|_| psi = run.step(&psi, time_step));
+        let (drift, defect) = run.look(&start, &psi);
+        let stop = if drift.abs() > params.drift {
+            Some(PhaseFieldStop::Drift)
+        } else if defect > (1.0 - LEAST_GAIN) * kept.1.defect {
+            Some(PhaseFieldStop::Settled)
+        } else {
+            None
+        };
+        // The state before is the better one, unless it is the step function itself.
+        if let (Some(stop), true) = (stop, kept.1.steps > 0) {
+            kept.1.stop = stop;
+            break;
+        }
+        let steps = kept.1.steps + steps;
+        kept = (psi.clone(), PhaseFieldInfo { steps, drift, defect, stop: PhaseFieldStop::Steps });
+        if stop == Some(PhaseFieldStop::Drift) {
+            kept.1.stop = PhaseFieldStop::Drift;
+            break;
+        }
+    }
+    let distance = kept.0.iter().zip(cloud.spacing()).map(|(&psi, &h)| run.distance(psi, h));
+    (distance.collect(), kept.1)
+}
+
+struct Run<'a, const D: usize> {
+    cloud: &'a Cloud<D>,
+    derivatives: &'a Derivatives<'a, D>,
+    /// In units of the spacing.
+    width: f64,
+}
+
+impl<const D: usize> Run<'_, D> {
+    /// (4.11), solved for the distance.
+    fn distance(&self, psi: f64, h: f64) -> f64 {
+        -std::f64::consts::SQRT_2 * self.width * h * psi.clamp(-SATURATED, SATURATED).atanh()
+    }
+
+    /// A stable time step, in units of the squared spacing of each node: steady states do not depend on it.
+    fn time_step(&self) -> f64 {
+        let band = self.derivatives.band();
+        let rate = |(place, &i): (usize, &u32)| {
+            let h = self.cloud.spacing()[i as usize];
+            self.derivatives.stiffness(place) * h * h
+        };
+        let stiffest = band.iter().enumerate().map(rate).fold(1.0, f64::max);
+        2.0 * STEP / (stiffest + 2.0 / (self.width * self.width))
+    }
+
+    fn step(&self, psi: &[f64], time_step: f64) -> Vec<f64> {
+        let squared = self.width * self.width;
+        let change = |(place, &i): (usize, &u32)| {
+            let i = i as usize;
+            let h = self.cloud.spacing()[i];
+            let (second, _) = self.derivatives.at(place, psi).along_gradient();
+            let rate = h * h * second + psi[i] * (1.0 - psi[i] * psi[i]) / squared;
+            (psi[i] + time_step * rate).clamp(-1.0, 1.0)
+        };
+        let band = self.derivatives.band();
+        let values: Vec<f64> = band.par_iter().enumerate().map(change).collect();
+        let mut next = psi.to_vec();
+        band.iter().zip(values).for_each(|(&i, value)| next[i as usize] = value);
+        next
+    }
+
+    /// Drift in spacings and defect of the profile.
+    fn look(&self, start: &[f64], psi: &[f64]) -> (f64, f64) {
+        let (mut growth, mut surface, mut defect, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for (place, &i) in self.derivatives.band().iter().enumerate() {
+            let i = i as usize;
+            let h = self.cloud.spacing()[i];
+            let volume = h.powi(D as i32);
+            let slope = self.derivatives.at(place, psi).along_gradient().1;
+            // Nodes within half a spacing of the interface count in part. psi itself would not do: on a curved interface
+            // its mean is not that of the step function, although nothing has moved.
+            let inside = (0.5 - self.distance(psi[i], h) / h).clamp(0.0, 1.0);
+            growth += volume * (inside - 0.5 * (1.0 + start[i])) / h;
+            surface += 0.5 * volume * slope;
+            if psi[i].abs() < NEAR {
+                let profile = std::f64::consts::SQRT_2 * self.width * h * slope / (1.0 - psi[i] * psi[i]);
+                defect += (profile - 1.0).abs();
+                count += 1.0;
+            }
+        }
+        let drift = if surface > 0.0 { growth / surface } else { f64::INFINITY };
+        (drift, if count > 0.0 { defect / count } else { f64::INFINITY })
+    }
+}

@@ -1,0 +1,90 @@
+//! Continuum surface reaction: indicators, sources at interfaces.
+
+use meshless_geometry::{Layout, Shape};
+use meshless_interfaces::dcpse::{
+    Indicators, ReactionParams, ReactionSource, Sigma, Smoothing, SurfaceReaction,
+};
+use meshless_interfaces::{Condition, Field, InterfaceJump, Method, MethodError};
+
+use crate::support::{Setup, max_difference, unit};
+
+fn disc(layout: Layout, spacing: f64, eta: [f64; 3]) -> Setup<2> {
+    let shapes = vec![
+        Some(Shape::ball([0.45, 0.52], 0.2).unwrap()),
+        Some(Shape::half_space([0.5, 0.5], [0.6, 0.8]).unwrap()),
+        None,
+    ];
+    Setup::<2>::generated(unit(), layout, spacing, 1).with_support(2.9).regions(shapes, &eta)
+}
+
+#[test]
+fn smoothed_indicators_sum_to_one_and_their_gradients_to_zero() {
+    for layout in [Layout::Jittered, Layout::Scattered] {
+        let setup = disc(layout, 0.03, [1.0; 3]);
+        let problem = setup.problem();
+        for smoothing in [Smoothing::Convolution, Smoothing::Diffusion] {
+            let chi = Indicators::new(&problem, smoothing, 1.5).unwrap();
+            let mixed = (0..setup.cloud.len()).filter(|&i| !chi.at(i).is_empty());
+            let mut count = 0;
+            for i in mixed {
+                let sum: f64 = chi.at(i).iter().map(|s| s.1).sum();
+                let slope: f64 = chi.at(i).iter().map(|s| s.2[0]).sum();
+                assert!((sum - 1.0).abs() < 1e-12 && slope.abs() < 1e-9, "{sum}, {slope:e}");
+                count += 1;
+            }
+            assert!(count > 100);
+        }
+    }
+}
+
+/// Where the diffusivity does not jump, a jump of the flux comes out exactly, on any cloud.
+#[test]
+fn the_operator_on_a_ramp_makes_a_kink_exact() {
+    let n = [0.6, 0.8];
+    let distance = move |x: &[f64; 2]| (x[0] - 0.5) * n[0] + (x[1] - 0.48) * n[1];
+    let value = move |x: &[f64; 2]| 1.0 + x[0] - 2.0 * x[1] + 7.0 * distance(x).max(0.0);
+    for layout in [Layout::Grid, Layout::Scattered] {
+        let mut setup = Setup::<2>::generated(unit(), layout, 0.05, 5)
+            .with_support(2.9)
+            .regions(vec![Some(Shape::half_space([0.5, 0.48], n).unwrap()), None], &[2.0, 2.0])
+            .conditions(move |_, x| Condition::Dirichlet(value(x)));
+        setup.jumps = vec![InterfaceJump { between: [0, 1], value: None, flux: Some(Field::Constant(14.0)) }];
+        let exact = setup.nodal(|_, x| value(x));
+        let error = |params| max_difference(&setup.solve_by(&SurfaceReaction { params }), &exact);
+        let ours = error(ReactionParams::default());
+        assert!(ours < 1e-9, "{layout:?}: {ours:e}");
+        let smeared = error(ReactionParams { source: ReactionSource::Smoothed, ..Default::default() });
+        // 0.4 w times the jump of the slope: 0.21; and the right sign, else it would be near 2.
+        assert!(smeared > 0.02 && smeared < 0.5, "{layout:?}: {smeared:e}");
+    }
+}
+
+/// Resistances in a row: only the harmonic mean knows them.
+#[test]
+fn the_harmonic_mean_converges_across_layers_and_the_arithmetic_one_does_not() {
+    let eta = [100.0, 1.0];
+    // Two layers, 0.4 and 0.6 thick: the same flux through both.
+    let flux = 1.0 / (0.4 / eta[0] + 0.6 / eta[1]);
+    let value = move |x: &[f64; 1]| {
+        if x[0] < 0.4 { flux * x[0] / eta[0] } else { 1.0 - flux * (1.0 - x[0]) / eta[1] }
+    };
+    let error = |sigma, spacing: f64| {
+        let setup = Setup::<1>::generated(unit(), Layout::Jittered, spacing, 3)
+            .with_support(3.1)
+            .regions(vec![Some(Shape::half_space([0.4], [1.0]).unwrap()), None], &eta)
+            .conditions(move |_, x| Condition::Dirichlet(value(x)));
+        let u = setup.solve_by(&SurfaceReaction { params: ReactionParams { sigma, ..Default::default() } });
+        max_difference(&u, &setup.nodal(|_, x| value(x)))
+    };
+    let harmonic = [0.02, 0.005].map(|h| error(Sigma::Harmonic, h));
+    assert!(harmonic[1] < 0.02 && harmonic[1] < 0.5 * harmonic[0], "{harmonic:?}");
+    assert!(error(Sigma::Arithmetic, 0.005) > harmonic[1]);
+}
+
+#[test]
+fn jumps_of_the_value_are_refused() {
+    let mut setup = disc(Layout::Jittered, 0.1, [1.0; 3]);
+    setup.jumps = vec![InterfaceJump { between: [0, 1], value: Some(Field::Constant(1.0)), flux: None }];
+    let refused = SurfaceReaction::default().discretize(&setup.problem());
+    assert!(matches!(refused, Err(MethodError::Unsupported { .. })));
+}
