@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use meshless_freespace::FreeSpaceError;
 use meshless_geometry::GeometryError;
 use meshless_interfaces::MethodError;
 use meshless_neighbors::NeighborError;
@@ -42,6 +43,9 @@ pub enum Error {
         /// Time reached.
         t: f64,
     },
+    /// Free space.
+    #[error("free space: {0}")]
+    FreeSpace(#[from] FreeSpaceError),
     /// Pictures and files.
     #[error("output: {0}")]
     Output(#[from] OutputError),

@@ -86,6 +86,7 @@ pub use overrides::{OverrideError, Overrides};
 
 pub use meshless_cells as cells;
 pub use meshless_expr as expr;
+pub use meshless_freespace as freespace;
 pub use meshless_geometry as geometry;
 pub use meshless_interfaces as interfaces;
 pub use meshless_neighbors as neighbors;

@@ -80,4 +80,12 @@ pub const METHODS: &[MethodInfo] = &[
         limits: "DC-PSE operators that see all regions, interfaces smeared over a width, jumps of the flux as sources: \
                  regions may meet anyhow; first order where the diffusivity jumps; no jumps of u; for comparison",
     },
+    MethodInfo {
+        name: "free-space",
+        order: "- / 2-20",
+        dimensions: "1, 2, 3",
+        limits: "one constant diffusivity in all of space, a source that vanishes outside of a box: convolution by FFT \
+                 with a Green's function of any even order (`order`, `sigma`, `kernel`), the best one for the source if \
+                 none is given; steady scenes only",
+    },
 ];

@@ -75,8 +75,11 @@ fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
         VtuField::scalars("u", field.u.clone()),
         VtuField::scalars("eta", field.eta.clone()),
         regions(solution),
-        VtuField::integers("row_kind", field.kind.iter().map(|&k| row_code(k)).collect()),
     ];
+    // In free space there are no rows.
+    if !field.kind.is_empty() {
+        fields.push(VtuField::integers("row_kind", field.kind.iter().map(|&k| row_code(k)).collect()));
+    }
     if let Some(gradient) = &field.gradient {
         fields.push(VtuField::vectors("gradient", gradient));
     }

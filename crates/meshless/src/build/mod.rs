@@ -3,6 +3,7 @@
 mod checks;
 mod conditions;
 mod fields;
+mod mesh;
 mod shapes;
 mod slits;
 mod survey;
@@ -10,6 +11,7 @@ mod survey;
 pub(crate) use checks::{check_interfaces_touch, check_regions_are_met};
 pub(crate) use conditions::{Boundary, missing_condition};
 pub(crate) use fields::{exact, field, jumps, materials, nodal_diffusivity, nodal_source};
+pub(crate) use mesh::{free_mesh, mesh_cells, particles};
 pub(crate) use shapes::{domain, explain_cloud, layout, regions, spacing, with_spacing_times};
 pub(crate) use slits::slits;
 pub(crate) use survey::{estimated_nodes, is_curved, sampled_contrast};

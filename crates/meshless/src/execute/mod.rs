@@ -2,6 +2,7 @@
 
 mod discrete;
 mod estimate;
+mod free_space;
 mod linear;
 mod measure;
 mod picture;
@@ -69,6 +70,13 @@ pub fn execute_from(
     checkpoint: Option<&Checkpoint>,
     progress: &mut dyn Progress,
 ) -> Result<Solution, Error> {
+    if scene.free_space.is_some() {
+        return match scene.dimension {
+            1 => free_space::execute::<1>(scene, plan, progress),
+            2 => free_space::execute::<2>(scene, plan, progress),
+            _ => free_space::execute::<3>(scene, plan, progress),
+        };
+    }
     match scene.dimension {
         1 => execute_in::<1>(scene, plan, checkpoint, progress),
         2 => execute_in::<2>(scene, plan, checkpoint, progress),

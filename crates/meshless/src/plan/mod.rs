@@ -5,6 +5,7 @@
 
 mod choose;
 mod effects;
+mod free_space;
 mod method;
 mod predict;
 mod show;
@@ -15,7 +16,7 @@ use crate::Error;
 use crate::scene::{MethodName, Scene};
 
 pub use effects::Effect;
-pub use method::MethodParams;
+pub use method::{FreeSpaceParams, MethodParams};
 pub use predict::Predicted;
 
 /// What will be done, in order.
@@ -112,6 +113,9 @@ impl Plan {
     /// Works out the plan of a scene.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let survey = effects::Survey::of(scene)?;
+        if scene.free_space.is_some() {
+            return free_space::plan(scene, survey);
+        }
         let method = choose::method_plan(scene, &survey)?;
         let predicted = predict::predict(scene, &survey, &method)?;
         let solver = choose::solver(scene, &survey, method.name, predicted.unknowns);

@@ -4,7 +4,7 @@ use std::fmt;
 
 use meshless_sparse::{AUTO_RESTART, SolverKind};
 
-use super::{Plan, Stage};
+use super::{MethodParams, Plan, Stage};
 
 impl Stage {
     /// The name used in reports.
@@ -39,6 +39,9 @@ impl Stage {
 impl Plan {
     /// The linear solver in words.
     pub fn solver_name(&self) -> String {
+        if matches!(self.method.params, MethodParams::FreeSpace(_)) {
+            return "fft".to_owned();
+        }
         let preconditioner = self.solver.preconditioner.name();
         match self.solver.kind {
             SolverKind::BiCgStab { l } => format!("bicgstab({l}) + {preconditioner}"),

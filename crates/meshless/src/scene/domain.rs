@@ -3,9 +3,12 @@
 use std::collections::HashSet;
 
 use super::error::SceneError;
+use super::free_space::FREE_SPACE;
 use super::reader::Table;
 use super::shapes::{bounds, keys_with_shape, refuse_future_shapes, required_shape};
-use super::spec::{ALL_FACES, BOX_FACES, DomainSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec};
+use super::spec::{
+    ALL_FACES, BOX_FACES, DomainSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec, ShapeSpec,
+};
 
 /// Seed of the random numbers, unless the scene gives one.
 const DEFAULT_SEED: u64 = 1;
@@ -13,7 +16,11 @@ const DEFAULT_SEED: u64 = 1;
 pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     let table = root.require("domain")?.table()?;
     refuse_future_shapes(&table)?;
-    table.allow(&keys_with_shape(&["bounds"]))?;
+    if let Some(value) = table.get(FREE_SPACE) {
+        table.allow(&[FREE_SPACE])?;
+        return Ok(DomainSpec { shape: ShapeSpec::Box(bounds(&value)?), bounds: None, place: table.place });
+    }
+    table.allow(&keys_with_shape(&["bounds", FREE_SPACE]))?;
     let shape = required_shape(&table)?;
     let bounds = match table.get("bounds") {
         None if shape.is_bounded() => None,

@@ -3,6 +3,7 @@
 use meshless_expr::nearest_name;
 
 use super::error::SceneError;
+use super::free_space;
 use super::options::{
     GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
 };
@@ -22,7 +23,7 @@ const MAX_SMOOTHING: u64 = 100;
 const MAX_WIDTH: f64 = 10.0;
 
 /// Methods by name.
-const METHODS: [(&str, MethodName); 10] = [
+const METHODS: [(&str, MethodName); 11] = [
     ("auto", MethodName::Auto),
     ("gfdm-classical", MethodName::GfdmClassical),
     ("gfdm-conservative", MethodName::GfdmConservative),
@@ -33,10 +34,8 @@ const METHODS: [(&str, MethodName); 10] = [
     ("immersed-interface", MethodName::ImmersedInterface),
     ("sharp", MethodName::Sharp),
     ("surface-reaction", MethodName::SurfaceReaction),
+    ("free-space", MethodName::FreeSpace),
 ];
-
-/// Methods that are recognised and not built.
-const FUTURE_METHODS: [&str; 1] = ["free-space"];
 
 /// Solvers by name.
 const SOLVERS: [(&str, SolverName); 5] = [
@@ -113,6 +112,9 @@ const IMMERSED: &[MethodName] = &[MethodName::ImmersedInterface];
 /// Methods that smear interfaces.
 const REACTION: &[MethodName] = &[MethodName::SurfaceReaction];
 
+/// Methods with a kernel and its radius, which are other ones in free space.
+const KERNEL: &[MethodName] = &[MethodName::SurfaceReaction, MethodName::FreeSpace];
+
 /// Options and the methods that have them.
 const OPTIONS: [(&str, &[MethodName]); 16] = [
     ("smoothing", STRONG),
@@ -126,20 +128,25 @@ const OPTIONS: [(&str, &[MethodName]); 16] = [
     ("flux_weights", PARTICLE),
     ("visibility", PARTICLE),
     ("ghosts", IMMERSED),
-    ("kernel", REACTION),
-    ("sigma", REACTION),
+    ("kernel", KERNEL),
+    ("sigma", KERNEL),
     ("reaction", REACTION),
     ("width", REACTION),
     ("interfaces", EVERY),
 ];
 
 pub(super) fn method(root: &Table<'_>) -> Result<MethodSpec, SceneError> {
-    let Some(value) = root.get("method") else { return Ok(MethodSpec::default()) };
+    let Some(value) = root.get("method") else { return Ok(free_space::default_method(root)) };
     let table = value.table()?;
     let keys: Vec<&str> =
         ["name", "order", "solver"].into_iter().chain(OPTIONS.map(|(key, _)| key)).collect();
     table.allow(&keys)?;
-    let name = table.get("name").map_or(Ok(MethodName::Auto), |value| method_name(&value))?;
+    let open = free_space::is_open(root);
+    let auto = if open { MethodName::FreeSpace } else { MethodName::Auto };
+    let name = match table.get("name") {
+        Some(value) => free_space::checked(method_name(&value)?, open, &value)?,
+        None => auto,
+    };
     Ok(MethodSpec {
         name,
         order: table.get("order").map(|value| order(&value, name)).transpose()?,
@@ -149,6 +156,9 @@ pub(super) fn method(root: &Table<'_>) -> Result<MethodSpec, SceneError> {
 }
 
 fn order(value: &Value<'_>, method: MethodName) -> Result<usize, SceneError> {
+    if method == MethodName::FreeSpace {
+        return free_space::order(value);
+    }
     if method != MethodName::Sharp {
         return Ok(value.integer(ORDERS[0], ORDERS[1])? as usize);
     }
@@ -177,6 +187,8 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
             check_owner(&value, key, methods, method)?;
         }
     }
+    // In free space these are read with the rest of it.
+    let of_reaction = |key: &str| table.get(key).filter(|_| method == MethodName::SurfaceReaction);
     let flag = |key: &str| table.get(key).map(|value| value.boolean()).transpose();
     let smoothing = table.get("smoothing").map(|value| value.integer(0, MAX_SMOOTHING)).transpose()?;
     Ok(MethodOptions {
@@ -190,8 +202,8 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         flux_weights: flag("flux_weights")?,
         visibility: flag("visibility")?,
         ghosts: table.get("ghosts").map(|value| value.one_of(&GHOSTS)).transpose()?,
-        kernel: table.get("kernel").map(|value| value.one_of(&KERNELS)).transpose()?,
-        sigma: table.get("sigma").map(|value| value.one_of(&SIGMAS)).transpose()?,
+        kernel: of_reaction("kernel").map(|value| value.one_of(&KERNELS)).transpose()?,
+        sigma: of_reaction("sigma").map(|value| value.one_of(&SIGMAS)).transpose()?,
         reaction: table.get("reaction").map(|value| value.one_of(&REACTIONS)).transpose()?,
         width: table.get("width").map(|value| width(&value)).transpose()?,
         interfaces: table.get("interfaces").map(|value| value.one_of(&INTERFACES)).transpose()?,
@@ -250,9 +262,6 @@ pub enum MethodNameError {
     /// There is no such method.
     #[error("unknown method \"{}\"", .0.escape_debug())]
     Unknown(String),
-    /// The method is known and not built.
-    #[error("the method \"{0}\" is not supported yet")]
-    NotSupported(String),
 }
 
 impl MethodNameError {
@@ -265,7 +274,6 @@ impl MethodNameError {
                 Some(near) => format!("did you mean \"{near}\"? The methods are {all}"),
                 None => format!("the methods are {all}"),
             },
-            Self::NotSupported(_) => format!("the methods so far are {all}"),
         }
     }
 }
@@ -279,7 +287,6 @@ impl MethodName {
     pub fn parse(name: &str) -> Result<Self, MethodNameError> {
         match METHODS.iter().find(|(known, _)| *known == name) {
             Some((_, method)) => Ok(*method),
-            None if FUTURE_METHODS.contains(&name) => Err(MethodNameError::NotSupported(name.to_owned())),
             None => Err(MethodNameError::Unknown(name.to_owned())),
         }
     }

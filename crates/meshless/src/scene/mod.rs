@@ -12,6 +12,7 @@ mod boundaries;
 mod domain;
 mod error;
 mod expression;
+mod free_space;
 mod method;
 mod options;
 mod reader;
@@ -30,6 +31,7 @@ use std::sync::Arc;
 
 pub use error::SceneError;
 pub use expression::ExprField;
+pub use free_space::{FreeSpaceSpec, GreenName, ParticlesSpec, SpreadName};
 pub use method::MethodNameError;
 pub use options::{
     GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
@@ -66,10 +68,13 @@ pub struct Scene {
     pub interfaces: Vec<InterfaceSpec>,
     /// Interfaces that end inside the domain; names are distinct, and 2-D only.
     pub slits: Vec<SlitSpec>,
-    /// Conditions, at least one; see [`BoundarySpec`] for which one holds where several match.
+    /// Conditions, at least one unless the domain is free space; see [`BoundarySpec`] for which one holds where several match.
     pub boundaries: Vec<BoundarySpec>,
     /// What the scene overrides of the plan's choices.
     pub method: MethodSpec,
+    /// Where the domain is all of space: how the problem is solved there. There are no conditions, holes, interfaces,
+    /// slits or steps in time then, and the domain is the box outside of which the source vanishes.
+    pub free_space: Option<FreeSpaceSpec>,
     /// How u changes with time; a steady scene has none.
     pub time: Option<TimeSpec>,
     /// Points whose values are reported, each of `dimension` coordinates.
@@ -111,7 +116,8 @@ impl Scene {
 
     /// An error about the boundary conditions as a whole, such as a face that none of them covers.
     pub fn error_at_boundaries(&self, message: impl Into<String>, help: impl Into<String>) -> SceneError {
-        let mut error = self.boundaries[0].place.error(message, help);
+        let place = self.boundaries.first().map_or(&self.domain.place, |b| &b.place);
+        let mut error = place.error(message, help);
         error.key = "boundaries".to_owned();
         error
     }

@@ -8,9 +8,9 @@ use super::error::SceneError;
 use super::reader::Table;
 use super::source::{MAX_FILE_BYTES, Place, Source};
 use super::spec::OutputSpec;
-use super::{Scene, boundaries, domain, method, regions, slits, time};
+use super::{Scene, boundaries, domain, free_space, method, regions, slits, time};
 
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "title",
     "dimension",
     "domain",
@@ -21,6 +21,7 @@ const KEYS: [&str; 14] = [
     "slits",
     "boundaries",
     "accuracy",
+    "particles",
     "method",
     "time",
     "probes",
@@ -38,7 +39,8 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     let parsed = DeTable::parse(&source.text).map_err(|error| not_toml(source, &error))?;
     let root = Table::root(source, parsed.get_ref());
     root.allow(&KEYS)?;
-    for (key, help) in FUTURE_SECTIONS {
+    let open = free_space::is_open(&root);
+    for (key, help) in FUTURE_SECTIONS.into_iter().filter(|_| !open) {
         if let Some(value) = root.get(key) {
             return Err(value.not_supported(&format!("[{key}]"), help));
         }
@@ -55,7 +57,8 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         dimension,
         interfaces: regions::interfaces(&root, &regions)?,
         slits: slits::slits(&root)?,
-        boundaries: boundaries::boundaries(&root, &domain, &holes)?,
+        boundaries: if open { Vec::new() } else { boundaries::boundaries(&root, &domain, &holes)? },
+        free_space: free_space::free_space(&root)?,
         method: method::method(&root)?,
         time: time::time(&root)?,
         probes: probes(&root)?,

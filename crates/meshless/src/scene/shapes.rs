@@ -18,10 +18,7 @@ pub(super) const SHAPE_KEYS: [&str; 9] = [
 ];
 
 /// Shapes that are recognised and not built.
-const FUTURE_SHAPES: [(&str, &str); 2] = [
-    ("stl", "describe the part by shapes or a level set"),
-    ("free_space", "give a domain that ends, such as `box`"),
-];
+const FUTURE_SHAPES: [(&str, &str); 1] = [("stl", "describe the part by shapes or a level set")];
 
 /// The keys of a table that has a shape: its own and those of shapes.
 pub(super) fn keys_with_shape(own: &[&'static str]) -> Vec<&'static str> {

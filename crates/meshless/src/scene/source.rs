@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::error::{Excerpt, SceneError};
@@ -105,6 +105,11 @@ impl Place {
     /// The same bytes under another key.
     pub(super) fn named(&self, key: String) -> Self {
         Self { key, ..self.clone() }
+    }
+
+    /// The folder of the file, for paths that are relative to it.
+    pub(crate) fn folder(&self) -> PathBuf {
+        Path::new(&self.source.file).parent().map(Path::to_path_buf).unwrap_or_default()
     }
 
     /// Line and column, both from 1; the column counts characters.

@@ -280,6 +280,8 @@ pub enum MethodName {
     Sharp,
     /// `surface-reaction`
     SurfaceReaction,
+    /// `free-space`: in free space, and nowhere else
+    FreeSpace,
 }
 
 /// Linear solvers.

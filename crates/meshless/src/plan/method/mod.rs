@@ -1,10 +1,12 @@
 //! The spatial methods as plans see them: one file for each family, one variant of [`MethodParams`] for each.
 
 mod dcpse;
+mod free_space;
 mod gfdm;
 mod particle_difference;
 mod sharp;
 
+pub use free_space::FreeSpaceParams;
 use meshless_interfaces::Method;
 use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams, ReactionParams, SurfaceReaction};
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
@@ -26,6 +28,8 @@ pub enum MethodParams {
     ParticleDifference(ParticleDifferenceParams),
     /// The same with the jumps of the slope as unknowns.
     ParticleDifferenceExtended(ParticleDifferenceParams),
+    /// Convolution on a mesh in free space.
+    FreeSpace(FreeSpaceParams),
     /// DC-PSE operators with immersed interfaces.
     ImmersedInterface(ImmersedParams),
     /// Sharp fits of high order.
@@ -55,6 +59,7 @@ pub(super) struct Steps {
 pub(super) fn check(name: MethodName, scene: &Scene) -> Result<(), Error> {
     match name {
         MethodName::Sharp => sharp::check(scene),
+        MethodName::FreeSpace => free_space::check(scene),
         _ => Ok(()),
     }
 }
@@ -70,6 +75,7 @@ impl MethodParams {
             MethodName::ImmersedInterface => Self::ImmersedInterface(dcpse::immersed(scene)),
             MethodName::Sharp => Self::Sharp(sharp::params(scene)),
             MethodName::SurfaceReaction => Self::SurfaceReaction(dcpse::reaction(scene)),
+            MethodName::FreeSpace => Self::FreeSpace(free_space::params(scene)),
             _ => Self::Gfdm(gfdm::params(name, scene, survey)),
         }
     }
@@ -85,6 +91,7 @@ impl MethodParams {
             Self::ImmersedInterface(params) => Box::new(ImmersedInterface { params: *params }),
             Self::Sharp(params) => Box::new(Sharp { params: *params }),
             Self::SurfaceReaction(params) => Box::new(SurfaceReaction { params: *params }),
+            Self::FreeSpace(_) => Box::new(free_space::NoRows),
         }
     }
 
@@ -96,6 +103,7 @@ impl MethodParams {
             Self::ImmersedInterface(params) => params.order,
             Self::Sharp(params) => params.order,
             Self::SurfaceReaction(params) => params.order,
+            Self::FreeSpace(params) => params.order.unwrap_or(0),
         }
     }
 
@@ -113,6 +121,7 @@ impl MethodParams {
             Self::Gfdm(_) | Self::ParticleDifferenceExtended(_) | Self::SurfaceReaction(_) => 1,
             Self::ParticleDifference(_) | Self::ImmersedInterface(_) => 2,
             Self::Sharp(params) => params.order,
+            Self::FreeSpace(params) => params.order.unwrap_or(0),
         }
     }
 
@@ -125,6 +134,7 @@ impl MethodParams {
             Self::ImmersedInterface(_) => dcpse::steps(survey),
             Self::Sharp(_) => sharp::steps(survey),
             Self::SurfaceReaction(_) => dcpse::reaction_steps(),
+            Self::FreeSpace(_) => free_space::steps(),
         }
     }
 
@@ -136,7 +146,8 @@ impl MethodParams {
             Self::Gfdm(_)
             | Self::ParticleDifference(_)
             | Self::ParticleDifferenceExtended(_)
-            | Self::Sharp(_) => None,
+            | Self::Sharp(_)
+            | Self::FreeSpace(_) => None,
         }
     }
 }

@@ -194,7 +194,7 @@ fn every_method_takes_its_options() {
     assert_eq!(with("auto", "support = 2.5").options.support, Some(2.5));
     assert_eq!(with("auto", "").solver.as_str(), "gmres");
     assert_eq!(MethodName::parse("gfdm-hybrid"), Ok(MethodName::GfdmHybrid));
-    assert!(MethodName::parse("free-space").is_err_and(|e| e.to_string().contains("not supported yet")));
+    assert_eq!(MethodName::parse("free-space"), Ok(MethodName::FreeSpace));
     assert!(MethodName::parse("gfdm-hibrid").is_err_and(|e| e.help().contains("gfdm-hybrid")));
 }
 

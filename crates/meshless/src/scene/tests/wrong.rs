@@ -284,13 +284,6 @@ fn method() {
         PLATE,
         &[
             wrong("\"gfdm-hybrid\"", "«\"gfdm-hibrid\"»", "method.name", "unknown method", "\"gfdm-hybrid\""),
-            wrong(
-                "\"gfdm-hybrid\"",
-                "«\"free-space\"»",
-                "method.name",
-                "not supported yet",
-                "gfdm-classical",
-            ),
             wrong("\"gfdm-hybrid\"", "«2»", "method.name", "expected a string", ""),
             wrong("\"bicgstab\"", "«\"bicg\"»", "method.solver", "unknown name", "bicgstab"),
             wrong("order = 2", "order = «1»", "method.order", "from 2 to 8, found 1", ""),

@@ -75,9 +75,9 @@ fn domains_of_other_shapes() {
             wrong(domain, "stl = «\"part.stl\"»", "domain.stl", "`stl` is not supported yet", ""),
             wrong(
                 domain,
-                "free_space = «{ min = [0, 0], max = [1, 1] }»",
-                "domain.free_space",
-                "`free_space` is not supported yet",
+                "free_space = { min = [0, 0], max = [1, 1] }\nstl = «\"part.stl\"»",
+                "domain.stl",
+                "not supported yet",
                 "",
             ),
             wrong(domain, "«boxx» = { min = [0, 0], max = [1, 1] }", "domain.boxx", "unknown key", "`box`"),

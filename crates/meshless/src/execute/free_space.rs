@@ -1,0 +1,147 @@
+//! Scenes in free space: a mesh, a convolution, and what is derived from the field.
+
+mod draw;
+mod report;
+
+use std::time::Instant;
+
+use meshless_freespace::{
+    Kernel, Mesh, Output, Plan as Convolution, Spectrum, Spread, Workspace, default_smoothing,
+};
+
+use super::{Progress, Solution};
+use crate::plan::{FreeSpaceParams, MethodParams, Plan, Stage};
+use crate::report::Seconds;
+use crate::scene::{GreenName, Scene, SpreadName};
+use crate::{Error, MAX_NODES, NodalField, build};
+
+/// The source on a mesh.
+struct Source<const D: usize> {
+    mesh: Mesh<D>,
+    points: Vec<[f64; D]>,
+    labels: Vec<u16>,
+    /// Over the diffusivity.
+    values: Vec<f64>,
+}
+
+/// The kernel that the source calls for, and the relative L2 error that is expected of it.
+#[derive(Clone, Copy)]
+struct Chosen {
+    kernel: Kernel,
+    error: f64,
+}
+
+pub(super) fn execute<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    progress: &mut dyn Progress,
+) -> Result<Solution, Error> {
+    let all = Instant::now();
+    let mut seconds = Seconds::default();
+    progress.stage(Stage::Points);
+    let params = match plan.method.params {
+        MethodParams::FreeSpace(params) => params,
+        _ => FreeSpaceParams { kernel: None, order: None, sigma: None, tolerance: None },
+    };
+    let start = Instant::now();
+    let (source, chosen) = source(scene, params)?;
+    seconds.points = start.elapsed().as_secs_f64();
+    progress.stage(Stage::Solve);
+    let start = Instant::now();
+    let convolution: Convolution<D> = Convolution::new(&source.mesh, chosen.kernel)?;
+    seconds.assembly = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let mut wanted = vec![Output::Potential { source: 0 }];
+    if plan.runs(Stage::Gradient) {
+        wanted.extend((0..D).map(|axis| Output::Gradient { source: 0, axis }));
+    }
+    let mut fields = Vec::new();
+    convolution.solve(&[&source.values], &wanted, &mut Workspace::default(), &mut fields)?;
+    seconds.solve = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let gradient: Option<Vec<[f64; D]>> = plan
+        .runs(Stage::Gradient)
+        .then(|| (0..source.points.len()).map(|i| std::array::from_fn(|a| fields[1 + a][i])).collect());
+    let u = &fields[0];
+    let exact =
+        plan.runs(Stage::Errors).then(|| build::exact(scene, &source.points, &source.labels)).transpose()?;
+    let errors = match (&exact, &gradient) {
+        (Some(exact), Some(gradient)) => Some(report::errors(scene, &source, u, gradient, exact)),
+        _ => None,
+    };
+    let probes = report::probes(scene, &source, chosen.kernel)?;
+    let picture = plan.runs(Stage::Plot).then(|| draw::draw(scene, &source, u)).transpose()?;
+    seconds.post = start.elapsed().as_secs_f64();
+    seconds.total = all.elapsed().as_secs_f64();
+    let report = report::report(scene, plan, &source, u, chosen, errors, seconds, probes);
+    let pad = |p: &[f64; D]| std::array::from_fn(|a| if a < D { p[a] } else { 0.0 });
+    let field = NodalField {
+        dimension: D,
+        points: source.points.iter().map(pad).collect(),
+        gradient: gradient.map(|g| g.iter().map(pad).collect()),
+        exact: exact.map(|e| e.values),
+        eta: vec![diffusivity(scene); source.points.len()],
+        region: source.labels,
+        kind: Vec::new(),
+        diagnosis: None,
+        u: fields.swap_remove(0),
+    };
+    Ok(Solution { report, field, picture, frames: Vec::new() })
+}
+
+/// The one diffusivity; the plan has checked that there is one.
+fn diffusivity(scene: &Scene) -> f64 {
+    scene.regions[0].diffusivity.expr.as_constant().unwrap_or(1.0)
+}
+
+/// The source on the mesh of the scene, or on one fine enough for the tolerance.
+fn source<const D: usize>(scene: &Scene, params: FreeSpaceParams) -> Result<(Source<D>, Chosen), Error> {
+    let mut times = 1;
+    loop {
+        let source = sample(scene, times)?;
+        let spectrum = Spectrum::new(&source.mesh, &source.values)?;
+        let chosen = choose(&spectrum, params)?;
+        let Some(tolerance) = params.tolerance.filter(|t| chosen.error > *t) else {
+            return Ok((source, chosen));
+        };
+        if source.mesh.len() << D > MAX_NODES {
+            return Err(
+                meshless_freespace::FreeSpaceError::Tolerance { tolerance, error: chosen.error }.into()
+            );
+        }
+        times *= 2;
+    }
+}
+
+fn sample<const D: usize>(scene: &Scene, times: usize) -> Result<Source<D>, Error> {
+    let mesh = build::free_mesh::<D>(scene, times)?;
+    let points: Vec<[f64; D]> = (0..mesh.len()).map(|i| mesh.point(i)).collect();
+    let regions = build::regions::<D>(scene)?;
+    let labels: Vec<u16> = points.iter().map(|p| regions.label(p, 0.0)).collect();
+    let mut values = build::nodal_source(scene, &build::materials(scene), &points, &labels)?;
+    if let Some(spec) = scene.free_space.as_ref().and_then(|s| s.particles.as_ref()) {
+        let (positions, strengths) = build::particles::<D>(spec)?;
+        let spread = match spec.spread {
+            SpreadName::M4Prime => Spread::M4Prime,
+            SpreadName::M6Star => Spread::M6Star,
+        };
+        let density = spread.deposit(&mesh, &positions, &strengths)?;
+        values.iter_mut().zip(density).for_each(|(value, d)| *value += d);
+    }
+    let eta = diffusivity(scene);
+    values.iter_mut().for_each(|value| *value /= eta);
+    Ok(Source { mesh, points, labels, values })
+}
+
+/// What the scene asks for, and of the rest the best.
+fn choose(spectrum: &Spectrum, params: FreeSpaceParams) -> Result<Chosen, Error> {
+    let kernel = match (params.kernel, params.order, params.sigma) {
+        (Some(GreenName::Spectral), ..) => Kernel::Spectral,
+        (Some(GreenName::Truncated), ..) => Kernel::Truncated,
+        (_, Some(order), Some(sigma)) => Kernel::Gaussian { order, smoothing: Some(sigma) },
+        (_, Some(order), None) => Kernel::Gaussian { order, smoothing: Some(default_smoothing(order)?) },
+        (_, None, Some(sigma)) => Kernel::Gaussian { order: 10, smoothing: Some(sigma) },
+        _ => spectrum.best().kernel,
+    };
+    Ok(Chosen { kernel, error: spectrum.error(kernel) })
+}
