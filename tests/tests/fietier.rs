@@ -39,3 +39,31 @@ fn two_inclusions_agree_with_the_reference() {
     });
     assert!((error / size).sqrt() < 5e-3, "{:e}", (error / size).sqrt());
 }
+
+/// A disc of five times the conductivity: `u = r^2 / eta + c` on each side. The shapes are forgotten once every node has
+/// its region; interfaces are then known to a tenth of a spacing or so.
+#[test]
+fn a_disc_is_solved_from_labels_alone() {
+    let scene = |spacing: f64, layout: &str, interfaces: &str| {
+        let outside = "x^2 + y^2 - 0.8*0.09";
+        format!(
+            "title = \"Disc\"\ndimension = 2\n[domain]\nbox = {{ min = [-0.5, -0.5], max = [0.5, 0.5] }}\n\
+             [points]\nspacing = {spacing}\nlayout = \"{layout}\"\n\
+             [[regions]]\nname = \"disc\"\nsphere = {{ center = [0.0, 0.0], radius = 0.3 }}\ndiffusivity = 5\n\
+             source = -4\nexact = \"(x^2 + y^2)/5\"\n\
+             [[regions]]\nname = \"plate\"\ndiffusivity = 1\nsource = -4\nexact = \"{outside}\"\n\
+             [[boundaries]]\nface = \"all\"\ndirichlet = \"{outside}\"\n\
+             [method]\nname = \"immersed-interface\"\ninterfaces = \"{interfaces}\"\n"
+        )
+    };
+    let error = |text: &str| {
+        let solution = solve_scene(&Scene::parse(text, "disc").expect("a scene")).expect("it can be solved");
+        solution.report.errors.expect("the scene has an exact solution").l2
+    };
+    for layout in ["grid", "jittered", "scattered"] {
+        let known = error(&scene(0.025, layout, "shapes"));
+        assert!(known < 1e-3, "{layout}: {known:e}");
+        let ladder = [0.05, 0.025].map(|h| error(&scene(h, layout, "labels")));
+        assert!(ladder[1] < 0.03, "{layout}: {ladder:?}, with shapes {known:e}");
+    }
+}

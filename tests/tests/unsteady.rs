@@ -48,6 +48,27 @@ fn the_order_in_space_is_kept() {
     }
 }
 
+/// Whatever makes the rows: they are stepped alike.
+#[test]
+fn every_method_of_a_bounded_domain_steps_through_time() {
+    let within = [
+        ("gfdm-classical", 0.01, 0.2),
+        ("gfdm-positive", 0.01, 0.2),
+        ("gfdm-hybrid", 0.01, 0.03),
+        ("gfdm-conservative", 0.01, 0.03),
+        ("particle-difference", 0.01, 0.06),
+        ("immersed-interface", 0.01, 0.02),
+        ("surface-reaction", 0.01, 0.15),
+    ];
+    for (name, homogeneous, contact) in within {
+        let method = MethodName::parse(name).expect("a method");
+        for (text, bound) in [(slab(2, 0.05, 1e-4), homogeneous), (composite(2, 0.05, 10.0, 1e-4), contact)] {
+            let solution = solve_with(&text, method).expect(name);
+            assert!(l2(&solution) < bound, "{name}: {:e}", l2(&solution));
+        }
+    }
+}
+
 #[test]
 fn two_materials_in_contact() {
     for contrast in [1e-2, 10.0, 1e6] {

@@ -97,7 +97,8 @@ impl<'a, const D: usize> Derivatives<'a, D> {
         &self.band
     }
 
-    fn neighbors(&self, place: usize) -> &[u32] {
+    /// Neighbours of node number `place` of the band.
+    pub(super) fn neighbors(&self, place: usize) -> &[u32] {
         self.rows[place].enlarged.as_deref().unwrap_or_else(|| self.lists.of(self.band[place] as usize))
     }
 

@@ -35,7 +35,7 @@ pub struct PhaseFieldParams {
 
 impl Default for PhaseFieldParams {
     fn default() -> Self {
-        Self { width: 2.0, drift: 0.1, max_steps: 400 }
+        Self { width: 2.0, drift: 0.15, max_steps: 400 }
     }
 }
 

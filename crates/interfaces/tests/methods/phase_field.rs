@@ -14,6 +14,56 @@ fn labelled(layout: Layout, spacing: f64) -> Setup<2> {
 }
 
 #[test]
+fn the_interface_is_found_to_a_fraction_of_the_spacing() {
+    // On clouds that are moved by half a spacing normals are off by up to 26 degrees.
+    for layout in [Layout::Grid, Layout::Jittered] {
+        let h = 0.02;
+        let setup = labelled(layout, h);
+        let problem = setup.problem();
+        let (regions, infos) = regions_from_labels(
+            &setup.cloud,
+            problem.supports.lists,
+            &setup.labels,
+            3,
+            &PhaseFieldParams::default(),
+        )
+        .unwrap();
+        for info in &infos {
+            assert!(info.drift.abs() <= 0.15 && info.steps >= 5 && info.defect < 0.5, "{infos:?}");
+        }
+        for (between, radius) in [([0, 1], 0.2), ([1, 2], 0.36)] {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for k in 0..60 {
+                let angle = std::f64::consts::TAU * f64::from(k) / 60.0;
+                let n = [angle.cos(), angle.sin()];
+                let x = [0.48 + (radius + h) * n[0], 0.5 + (radius + h) * n[1]];
+                let foot = regions.project(between[0], between[1], &x, 6.0 * h).unwrap();
+                let offset = [foot.point[0] - 0.48, foot.point[1] - 0.5];
+                let found = offset[0].hypot(offset[1]);
+                // The nearest point of a circle lies on the ray, whose direction is the normal.
+                let along = (foot.normal[0] * n[0] + foot.normal[1] * n[1]).min(1.0);
+                assert!(along > 0.9, "{layout:?} {between:?}: {along}");
+                sum += (found - radius).powi(2);
+                count += 1.0;
+            }
+            let rms = (sum / count).sqrt() / h;
+            assert!(rms < 0.25, "{layout:?} {between:?}: {rms} spacings");
+        }
+        // Labels and level sets agree away from the interface.
+        let wrong = (0..setup.cloud.len())
+            .filter(|&i| regions.label(&setup.cloud.points()[i], h) != setup.labels[i])
+            .filter(|&i| {
+                let x = setup.cloud.points()[i];
+                let r = (x[0] - 0.48).hypot(x[1] - 0.5);
+                (r - 0.2).abs() > 0.5 * h && (r - 0.36).abs() > 0.5 * h
+            })
+            .map(|i| setup.cloud.points()[i])
+            .collect::<Vec<_>>();
+        assert!(wrong.is_empty(), "{layout:?}: {wrong:?}");
+    }
+}
+
+#[test]
 fn labels_that_do_not_fit_are_refused() {
     let setup = labelled(Layout::Grid, 0.1);
     let problem = setup.problem();
