@@ -10,6 +10,7 @@ mod gfdm;
 mod hard;
 mod html;
 mod jobs;
+mod ladder;
 mod options;
 mod order;
 mod particle_difference;

@@ -105,14 +105,10 @@ fn half_space(table: &Table<'_>) -> Result<ShapeSpec, SceneError> {
     Ok(ShapeSpec::HalfSpace { point, normal: table.require("normal")?.direction()? })
 }
 
-fn polygon(value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
-    needs_dimension(value.dimension, 2, "polygon", |message, help| value.error(message, help))?;
-    let items = value.items()?;
-    if items.len() < 3 {
-        return Err(value.error(format!("a polygon has at least 3 vertices, not {}", items.len()), ""));
-    }
+/// The vertices of a polygon or a polyline, each another than the one before it.
+pub(super) fn vertices(items: &[Value<'_>]) -> Result<Vec<[f64; 2]>, SceneError> {
     let mut vertices: Vec<[f64; 2]> = Vec::with_capacity(items.len());
-    for item in &items {
+    for item in items {
         let vertex = item.vector()?;
         let vertex = [vertex[0], vertex[1]];
         if vertices.last() == Some(&vertex) {
@@ -120,6 +116,16 @@ fn polygon(value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
         }
         vertices.push(vertex);
     }
+    Ok(vertices)
+}
+
+fn polygon(value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
+    needs_dimension(value.dimension, 2, "polygon", |message, help| value.error(message, help))?;
+    let items = value.items()?;
+    if items.len() < 3 {
+        return Err(value.error(format!("a polygon has at least 3 vertices, not {}", items.len()), ""));
+    }
+    let vertices = vertices(&items)?;
     if vertices.first() == vertices.last() {
         let help = "a polygon closes by itself";
         return Err(items[items.len() - 1].error("the last vertex repeats the first one", help));

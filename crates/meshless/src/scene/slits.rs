@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::boundaries::robin;
 use super::error::SceneError;
 use super::reader::Table;
+use super::shapes::vertices;
 use super::spec::{ConditionSpec, SlitConditionSpec, SlitSpec};
 
 /// Conditions that hold on each side of a slit; a slit has at most one of them.
@@ -52,16 +53,7 @@ fn polyline(table: &Table<'_>) -> Result<Vec<[f64; 2]>, SceneError> {
     if items.len() < 2 {
         return Err(value.error(format!("a slit has at least 2 vertices, not {}", items.len()), ""));
     }
-    let mut vertices: Vec<[f64; 2]> = Vec::with_capacity(items.len());
-    for item in &items {
-        let vertex = item.vector()?;
-        let vertex = [vertex[0], vertex[1]];
-        if vertices.last() == Some(&vertex) {
-            return Err(item.error("the vertex repeats the one before it", ""));
-        }
-        vertices.push(vertex);
-    }
-    Ok(vertices)
+    vertices(&items)
 }
 
 fn condition(table: &Table<'_>) -> Result<SlitConditionSpec, SceneError> {

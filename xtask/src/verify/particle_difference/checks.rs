@@ -3,14 +3,11 @@
 use super::cases::{Expected, Ladder};
 use super::{FORMER, FORMER_VARYING, GRID, OURS, PAPER, SEEDS};
 use crate::verify::claims::Claims;
+pub(super) use crate::verify::ladder::{Error, rungs};
 use crate::verify::order;
-use crate::verify::row::Row;
 use crate::verify::runner::Runner;
-use crate::verify::study::{Key, Outcome, find};
+use crate::verify::study::{Key, find};
 use crate::verify::variant::Variant;
-
-/// An error of a run.
-pub(super) type Error = fn(&Row) -> Option<f64>;
 
 /// The two errors that the paper has.
 const ERRORS: [(&str, Error); 2] = [("u", |r| r.err_linf), ("gradient", |r| r.err_grad_linf)];
@@ -20,17 +17,6 @@ const ONE_SIDED: f64 = 30.0;
 
 /// Largest error of u over the smallest, over all contrasts of one sign.
 const INSENSITIVE: f64 = 2.0;
-
-/// The rungs of a ladder, as spacing and error.
-pub(super) fn rungs(runner: &Runner<'_>, key: &Key, error: Error) -> Vec<(f64, f64)> {
-    let mut found: Vec<&Outcome> = runner
-        .outcomes
-        .iter()
-        .filter(|o| Key { level: o.key.level, ..*key } == o.key && error(&o.row).is_some())
-        .collect();
-    found.sort_by_key(|o| o.key.level);
-    found.iter().map(|o| (o.row.spacing, error(&o.row).unwrap_or(f64::NAN))).collect()
-}
 
 fn fitted(runner: &Runner<'_>, key: &Key, error: Error) -> Option<f64> {
     let rungs = rungs(runner, key, error);

@@ -2,14 +2,11 @@
 
 use super::cases::{self, Ladder};
 use crate::verify::claims::Claims;
+pub(super) use crate::verify::ladder::{Error, rungs};
 use crate::verify::options::Effort;
 use crate::verify::order;
-use crate::verify::row::Row;
 use crate::verify::runner::Runner;
-use crate::verify::study::{Key, Outcome, find};
-
-/// An error of a run.
-pub(super) type Error = fn(&Row) -> Option<f64>;
+use crate::verify::study::{Key, find};
 
 /// Least orders of u and of its gradient, by the order of the polynomials.
 const ORDERS: [(usize, [f64; 2]); 2] = [(4, [3.7, 3.3]), (6, [5.3, 4.8])];
@@ -22,17 +19,6 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// Largest error over the smallest, over contrasts from 1e2 to 1e10.
 const SPREAD: f64 = 3.0;
-
-/// The rungs of a ladder, as spacing and error.
-pub(super) fn rungs(runner: &Runner<'_>, key: &Key, error: Error) -> Vec<(f64, f64)> {
-    let mut found: Vec<&Outcome> = runner
-        .outcomes
-        .iter()
-        .filter(|o| Key { level: o.key.level, ..*key } == o.key && error(&o.row).is_some())
-        .collect();
-    found.sort_by_key(|o| o.key.level);
-    found.iter().map(|o| (o.row.spacing, error(&o.row).unwrap_or(f64::NAN))).collect()
-}
 
 /// Orders of u and of its gradient over all seeds and contrasts at once, and the spread over the contrasts.
 pub(super) fn ladder(runner: &Runner<'_>, ladder: &Ladder, claims: &mut Claims) {
