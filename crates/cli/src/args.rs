@@ -22,6 +22,8 @@ pub(crate) enum Command {
     Solve(SolveArgs),
     /// Show what a scene calls for and how it would be solved, without solving it.
     Plan(PlanArgs),
+    /// Show what accuracy costs in time: run the methods that serve the scene on a ladder of clouds.
+    Cost(CostArgs),
     /// List the methods, their orders, dimensions and limits.
     Methods,
 }
@@ -38,9 +40,6 @@ pub(crate) struct SolveArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) instead: InsteadArgs,
-    /// Relative L2 error to reach (not supported yet).
-    #[arg(long)]
-    pub(crate) tolerance: Option<f64>,
     /// File to keep an unsteady run in; if it exists the run goes on from it, to the same result.
     #[arg(long)]
     pub(crate) checkpoint: Option<PathBuf>,
@@ -61,14 +60,21 @@ pub(crate) struct InsteadArgs {
     /// Spacing to use instead of the scene's: a number, or an expression of position.
     #[arg(long, allow_hyphen_values = true)]
     pub(crate) spacing: Option<String>,
+    /// Relative L2 error to reach: the spacing is refined until the estimate says so.
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
 }
 
 impl InsteadArgs {
     /// The scene of a file with these values in it.
     pub(crate) fn read(&self, file: &Path) -> Result<Scene, Failure> {
         let mut scene = Scene::read(file).map_err(meshless::Error::from)?;
-        let overrides =
-            Overrides { method: self.method.as_deref(), order: self.order, spacing: self.spacing.as_deref() };
+        let overrides = Overrides {
+            method: self.method.as_deref(),
+            order: self.order,
+            spacing: self.spacing.as_deref(),
+            tolerance: self.tolerance,
+        };
         overrides.apply(&mut scene).map_err(|e| Failure::input(format!("error: {e}")))?;
         Ok(scene)
     }
@@ -83,4 +89,37 @@ pub(crate) struct PlanArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) instead: InsteadArgs,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct CostArgs {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Folder for the diagram and the table; made if it does not exist.
+    #[arg(long, default_value = "meshless-out")]
+    pub(crate) out: PathBuf,
+    /// Print one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Only this method; may be given several times.
+    #[arg(long)]
+    pub(crate) method: Vec<String>,
+    /// Finest spacing of the ladder, instead of the scene's: a number, or an expression of position.
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) spacing: Option<String>,
+    /// Seconds that all of it may take, about.
+    #[arg(long, default_value_t = 120.0)]
+    pub(crate) seconds: f64,
+    /// Threads to use; all cores by default.
+    #[arg(long)]
+    pub(crate) threads: Option<usize>,
+}
+
+impl CostArgs {
+    /// The scene of the file.
+    pub(crate) fn read(&self) -> Result<Scene, Failure> {
+        let instead =
+            InsteadArgs { method: None, order: None, spacing: self.spacing.clone(), tolerance: None };
+        instead.read(&self.scene)
+    }
 }

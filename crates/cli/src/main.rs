@@ -9,6 +9,7 @@ macro_rules! say {
 }
 
 mod args;
+mod cost;
 mod methods;
 mod plan;
 mod progress;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
     let outcome = match &args.command {
         Command::Solve(options) => solve::run(options),
         Command::Plan(options) => plan::run(options),
+        Command::Cost(options) => cost::run(options),
         Command::Methods => methods::run(),
     };
     match outcome {

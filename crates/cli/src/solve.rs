@@ -15,11 +15,6 @@ use crate::progress::Bar;
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
 
 pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
-    if args.tolerance.is_some() {
-        return Err(Failure::input(
-            "error: --tolerance is not supported yet; choose --spacing and look at the estimate",
-        ));
-    }
     let scene = args.instead.read(&args.scene)?;
     let plan = Plan::new(&scene)?;
     let writes = scene.output.vtu || scene.output.plot;
@@ -46,7 +41,7 @@ pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
 }
 
 /// Makes the output folder and finds out whether it can be written, before anything is computed.
-fn prepare(out: &Path) -> Result<(), Failure> {
+pub(crate) fn prepare(out: &Path) -> Result<(), Failure> {
     let refuse = |e: std::io::Error| {
         Failure::input(format!("error: --out {}: {e}; name a folder that can be written", out.display()))
     };
@@ -56,7 +51,10 @@ fn prepare(out: &Path) -> Result<(), Failure> {
     std::fs::remove_file(&probe).map_err(refuse)
 }
 
-fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+pub(crate) fn on_threads<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, Failure> {
     match threads {
         None => Ok(work()),
         Some(0) => Err(Failure::input("error: --threads must be at least 1")),
@@ -111,6 +109,19 @@ fn print(report: &Report, solution: &Solution) {
         (Some(l2), _) => say!("estimate    l2 {l2:.3e}"),
         (None, Some(why)) => say!("estimate    none: {why}"),
         (None, None) => {}
+    }
+    for rung in report.accuracy.iter().flat_map(|accuracy| &accuracy.rungs) {
+        match (&rung.why, rung.estimate) {
+            (None, Some(estimate)) => say!(
+                "  spacing {:.3e}: {} unknowns, estimate {estimate:.1e}, {:.3} s",
+                rung.spacing,
+                rung.unknowns,
+                rung.seconds
+            ),
+            (why, _) => {
+                say!("  spacing {:.3e}: {}", rung.spacing, why.as_deref().unwrap_or("no estimate"));
+            }
+        }
     }
     let s = &report.seconds;
     say!(

@@ -287,3 +287,48 @@ fn an_unsteady_scene_writes_its_fields_and_goes_on_from_its_checkpoint() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("the scene is steady"));
 }
+
+#[test]
+fn a_tolerance_takes_the_place_of_a_spacing() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = SCENE.replace("[points]\nspacing = 0.02\nlayout = \"jittered\"\n", "");
+    let scene = scene_in(folder.path(), &text);
+    let out = folder.path().join("out");
+    let solve = |extra: &[&str]| {
+        let fixed = ["solve", scene.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
+        meshless(&[&fixed, extra].concat())
+    };
+    assert_eq!(solve(&[]).status.code(), Some(2), "neither spacing nor tolerance");
+    let with = scene_in(folder.path(), &(text.clone() + "\n[accuracy]\ntolerance = 1e-6\n"));
+    let output = meshless(&["solve", with.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["errors"]["l2"].as_f64().unwrap() < 1e-6);
+    assert!(json["accuracy"]["rungs"].as_array().is_some_and(|rungs| !rungs.is_empty()));
+    let refused = meshless(&["solve", with.to_str().unwrap(), "--tolerance", "-1"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("above 0 and below 1"), "{}", stderr(&refused));
+}
+
+#[test]
+fn cost_draws_error_against_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    let out = folder.path().join("out");
+    let fixed = ["cost", scene.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = meshless(&fixed);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("best buys") && text.contains("gfdm-hybrid"), "{text}");
+    let svg = std::fs::read_to_string(out.join("scene-cost.svg")).unwrap();
+    assert!(svg.contains("seconds from points to solution"));
+    assert!(out.join("scene-cost.csv").is_file());
+    let output = meshless(&[&fixed[..], &["--json", "--method", "sharp"]].concat());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let runs = json["runs"].as_array().unwrap();
+    assert!(runs.iter().all(|run| run["method"] == "sharp" && run["seconds"].is_f64()));
+    for wrong in [["--method", "shrap"], ["--seconds", "0"]] {
+        let refused = meshless(&[&fixed[..], &wrong].concat());
+        assert_eq!(refused.status.code(), Some(2));
+    }
+}

@@ -63,3 +63,27 @@ fn commands_print_what_the_readme_shows() {
     }
     assert!(folder.path().join("meshless-out/plate.svg").is_file());
 }
+
+#[test]
+fn commands_without_a_shown_answer_run_from_the_root() {
+    let text = readme();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let commands: Vec<&str> = blocks(&text, "sh")
+        .into_iter()
+        .flat_map(str::lines)
+        .filter_map(|line| line.strip_prefix("meshless "))
+        .collect();
+    assert!(!commands.is_empty());
+    for command in commands {
+        let folder = tempfile::tempdir().unwrap();
+        let mut arguments: Vec<&str> = command.split_whitespace().collect();
+        arguments.extend(["--out", folder.path().to_str().unwrap()]);
+        let output = Command::new(env!("CARGO_BIN_EXE_meshless"))
+            .args(&arguments)
+            .current_dir(&root)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(std::fs::read_dir(folder.path()).unwrap().count() > 0, "{command} writes nothing");
+    }
+}

@@ -17,6 +17,12 @@ pub enum Error {
     /// The scene is wrong: says where and what to do.
     #[error(transparent)]
     Scene(Box<SceneError>),
+    /// The cloud is too coarse for what the scene has: says where and what to do.
+    #[error(transparent)]
+    TooCoarse(Box<SceneError>),
+    /// A tolerance that was not met: says what was.
+    #[error(transparent)]
+    Unmet(Box<SceneError>),
     /// Shapes, domain or cloud.
     #[error("geometry: {0}")]
     Geometry(#[from] GeometryError),
@@ -60,6 +66,22 @@ impl From<SceneError> for Error {
 impl Error {
     /// Whether the input is at fault, rather than the solve.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Scene(_) | Self::Checkpoint { .. })
+        matches!(self, Self::Scene(_) | Self::TooCoarse(_) | Self::Checkpoint { .. })
+    }
+
+    /// Whether a finer cloud may help.
+    pub fn is_too_coarse(&self) -> bool {
+        use MethodError::{Cell, NoFoot, Stencil, Unresolved};
+        matches!(
+            self,
+            Self::TooCoarse(_)
+                | Self::Method(
+                    Unresolved { .. }
+                        | NoFoot { .. }
+                        | Stencil { .. }
+                        | Cell { .. }
+                        | MethodError::Incompatible { .. }
+                )
+        )
     }
 }

@@ -62,6 +62,7 @@
 //! ```
 
 mod build;
+pub mod cost;
 mod error;
 mod execute;
 mod field;

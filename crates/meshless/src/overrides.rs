@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::scene::{ExprField, MethodName, Scene, SceneError};
+use crate::scene::{AccuracySpec, ExprField, MethodName, Scene, SceneError};
 
 /// Values that take the place of the scene's.
 #[derive(Debug, Clone, Copy, Default)]
@@ -13,6 +13,8 @@ pub struct Overrides<'a> {
     pub order: Option<usize>,
     /// Spacing: a number or an expression of position.
     pub spacing: Option<&'a str>,
+    /// Relative L2 error to reach.
+    pub tolerance: Option<f64>,
 }
 
 /// Why an override cannot be used.
@@ -27,11 +29,16 @@ pub enum OverrideError {
         reason: String,
     },
     /// Not an order that stencils can have.
-    #[error("--order {0}: the stencils reproduce polynomials of degree 2 to 8")]
-    Order(usize),
-    /// Not a spacing.
+    #[error("--order {order}: the orders of this method are 2 to {highest}")]
+    Order {
+        /// What was given.
+        order: usize,
+        /// The highest order that the method has.
+        highest: usize,
+    },
+    /// Not a spacing, or not a tolerance.
     #[error(transparent)]
-    Spacing(#[from] SceneError),
+    Value(#[from] SceneError),
 }
 
 impl Overrides<'_> {
@@ -44,13 +51,22 @@ impl Overrides<'_> {
             })?;
         }
         if let Some(order) = self.order {
-            if !(2..=8).contains(&order) {
-                return Err(OverrideError::Order(order));
+            let highest = match scene.method.name {
+                MethodName::Sharp => 16,
+                MethodName::FreeSpace => 20,
+                _ => 8,
+            };
+            if !(2..=highest).contains(&order) {
+                return Err(OverrideError::Order { order, highest });
             }
             scene.method.order = Some(order);
         }
         if let Some(text) = self.spacing {
             scene.points.spacing = ExprField::from_command_line("--spacing", text, scene.dimension)?;
+        }
+        if let Some(tolerance) = self.tolerance {
+            let spec = AccuracySpec::from_command_line(tolerance, scene.dimension, scene.accuracy.as_ref())?;
+            scene.accuracy = Some(spec);
         }
         Ok(())
     }

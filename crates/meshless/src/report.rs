@@ -30,6 +30,9 @@ pub struct Report {
     pub errors: Option<Errors>,
     /// Errors estimated without it.
     pub estimate: Estimate,
+    /// How the tolerance was reached, where the scene has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<AccuracyReport>,
     /// Smallest and largest value.
     pub extrema: Extrema,
     /// How the linear system was solved.
@@ -99,6 +102,31 @@ pub struct Estimate {
     /// Why there is no estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
+}
+
+/// The clouds that were tried for a tolerance; the report is about the last one, and its `seconds.total` about all.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct AccuracyReport {
+    /// Relative L2 error to reach; twice the estimate of the last cloud is below it.
+    pub tolerance: f64,
+    /// The clouds, in the order in which they were tried.
+    pub rungs: Vec<Rung>,
+}
+
+/// A cloud that was tried.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Rung {
+    /// Its spacing.
+    pub spacing: f64,
+    /// Nodes whose value was solved for; 0 where the cloud was too coarse to be solved on.
+    pub unknowns: usize,
+    /// Estimated relative L2 error.
+    pub estimate: Option<f64>,
+    /// Why it could not be solved on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+    /// Wall-clock seconds.
+    pub seconds: f64,
 }
 
 /// Smallest and largest nodal value.

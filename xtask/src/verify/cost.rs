@@ -1,17 +1,19 @@
-//! Suite `cost`: what accuracy costs in time, all methods on the interior case at a jump of 1e6.
+//! Suite `cost`: what accuracy costs in time, all methods on the interior case at a jump of 1e6, and scenes that give an
+//! error to reach.
 
 use super::claims::{Claims, short};
 use super::figure::{Curve, Figure};
 use super::options::{Effort, Options};
 use super::runner::{self, Extra, Runner};
 use super::study::{self, Key, Outcome, Section, Study, Table};
+use super::tolerance;
 use super::variant::Variant;
 
 const SUITE: &str = "cost";
 
-pub(super) const ABOUT: &str = "What accuracy costs in time: all methods on the interior interface at a jump of 1e6, each time the median of three runs.";
+pub(super) const ABOUT: &str = "What accuracy costs in time: all methods on the interior interface at a jump of 1e6, each time the median of three runs; and scenes that give an error to reach.";
 
-pub(super) const CASES: [&str; 1] = ["interior"];
+pub(super) const CASES: [&str; 2] = ["interior", tolerance::CASE];
 
 const JUMP: f64 = 1e6;
 const SEED: u64 = 1;
@@ -57,8 +59,9 @@ pub(super) fn run(options: &Options) -> Study {
         }
     }
     check(&runner, rungs - 1, &mut claims);
+    tolerance::run(&mut runner, &mut claims);
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
-    let sections = vec![section(&runner)];
+    let sections = vec![section(&runner), tolerance::section(&runner)];
     Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
 }
 
@@ -99,7 +102,7 @@ fn check(runner: &Runner<'_>, finest: usize, claims: &mut Claims) {
 
 fn section(runner: &Runner<'_>) -> Section {
     let rungs = |variant: Variant| -> Vec<&Outcome> {
-        runner.outcomes.iter().filter(|o| o.key.variant == variant).collect()
+        runner.outcomes.iter().filter(|o| o.key.case == CASES[0] && o.key.variant == variant).collect()
     };
     let curves = VARIANTS
         .iter()

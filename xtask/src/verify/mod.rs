@@ -20,6 +20,7 @@ mod sharp;
 mod solvers;
 mod study;
 mod suite;
+mod tolerance;
 mod variant;
 
 use std::fs;

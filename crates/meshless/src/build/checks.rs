@@ -16,7 +16,7 @@ pub(crate) fn check_regions_are_met(scene: &Scene, labels: &[u16]) -> Result<(),
             let message = format!("no node lies in the region \"{}\"", spec.name);
             let help = "it is outside of the domain, covered by the regions before it, or thinner than the spacing: \
                         remove it, move it, or use a smaller spacing";
-            Err(spec.place.error(message, help).into())
+            Err(Error::TooCoarse(Box::new(spec.place.error(message, help))))
         }
     }
 }
@@ -38,10 +38,8 @@ pub(crate) fn check_interfaces_touch(
             let message = format!(
                 "the regions \"{a}\" and \"{b}\" do not touch anywhere, so nothing can jump between them"
             );
-            return Err(spec
-                .place
-                .error(message, "remove the entry, or name regions that share an interface")
-                .into());
+            let help = "remove the entry, or name regions that share an interface";
+            return Err(Error::TooCoarse(Box::new(spec.place.error(message, help))));
         }
     }
     Ok(())

@@ -73,10 +73,12 @@ pub(crate) fn layout(scene: &Scene) -> Layout {
 pub(crate) fn explain_cloud(scene: &Scene, error: GeometryError) -> Error {
     match error {
         GeometryError::InvalidSpacing { .. }
-        | GeometryError::SpacingTooLarge { .. }
         | GeometryError::TooManyNodes { .. }
         | GeometryError::GradedLattice { .. } => {
             scene.error_at(&scene.points.spacing, error.to_string(), "").into()
+        }
+        GeometryError::SpacingTooLarge { .. } => {
+            Error::TooCoarse(Box::new(scene.error_at(&scene.points.spacing, error.to_string(), "")))
         }
         error => located(&scene.domain.place, error),
     }

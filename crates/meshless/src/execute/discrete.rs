@@ -143,7 +143,7 @@ impl<const D: usize> Discrete<D> {
     }
 
     /// Measure that belongs to each node: `spacing^D`, half of it on a face, a quarter on an edge, an eighth at a corner.
-    pub(super) fn measures(&self) -> Vec<f64> {
+    pub(crate) fn measures(&self) -> Vec<f64> {
         let mut measures: Vec<f64> = self.cloud.spacing().iter().map(|s| s.powi(D as i32)).collect();
         for node in self.cloud.boundary() {
             measures[node.node as usize] *= 0.5_f64.powi(node.touches.len().min(D) as i32);
@@ -152,7 +152,7 @@ impl<const D: usize> Discrete<D> {
     }
 
     /// The exact solution and its gradient at the nodes, each in its own region.
-    pub(super) fn exact(&self, scene: &Scene) -> Result<Exact<D>, Error> {
+    pub(crate) fn exact(&self, scene: &Scene) -> Result<Exact<D>, Error> {
         build::exact(scene, self.cloud.points(), &self.labels)
     }
 

@@ -22,7 +22,7 @@ use crate::{Error, build};
 const RATIO: f64 = 2.0;
 
 /// The estimate of a method's own choice.
-pub(super) fn estimate<const D: usize>(
+pub(crate) fn estimate<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     solved: &Solved<D>,

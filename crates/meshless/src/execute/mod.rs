@@ -6,19 +6,21 @@ mod free_space;
 mod linear;
 mod measure;
 mod picture;
+mod refine;
 mod reproduce;
 mod summary;
 mod unsteady;
 
 use std::time::Instant;
 
-use meshless_interfaces::{Discretization, SystemParams, SystemSolution, diagnose_nodes, solve};
+use meshless_interfaces::{Discretization, RowKind, SystemParams, SystemSolution, diagnose_nodes, solve};
 
 use crate::plan::{Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
 use crate::{Error, NodalField};
 pub(crate) use discrete::{Discrete, Exact};
+pub(crate) use estimate::estimate;
 pub use linear::linear_system;
 pub use picture::Picture;
 pub use reproduce::{Reproduction, reproduce};
@@ -70,6 +72,19 @@ pub fn execute_from(
     checkpoint: Option<&Checkpoint>,
     progress: &mut dyn Progress,
 ) -> Result<Solution, Error> {
+    match plan.accuracy {
+        Some(goal) if plan.runs(Stage::Refinement) => refine::refine(scene, plan, goal, checkpoint, progress),
+        _ => execute_once(scene, plan, checkpoint, progress),
+    }
+}
+
+/// Solves a scene on one cloud.
+pub(crate) fn execute_once(
+    scene: &Scene,
+    plan: &Plan,
+    checkpoint: Option<&Checkpoint>,
+    progress: &mut dyn Progress,
+) -> Result<Solution, Error> {
     if scene.free_space.is_some() {
         return match scene.dimension {
             1 => free_space::execute::<1>(scene, plan, progress),
@@ -85,15 +100,27 @@ pub fn execute_from(
 }
 
 /// A solve without what is derived from it.
-struct Solved<const D: usize> {
-    discrete: Discrete<D>,
+pub(crate) struct Solved<const D: usize> {
+    pub(crate) discrete: Discrete<D>,
     discretization: Discretization,
-    system: SystemSolution,
-    seconds: Seconds,
+    pub(crate) system: SystemSolution,
+    pub(crate) seconds: Seconds,
     history: Option<History>,
 }
 
-fn solve_in<const D: usize>(
+impl<const D: usize> Solved<D> {
+    /// Nodes whose value was solved for.
+    pub(crate) fn unknowns(&self) -> usize {
+        self.discretization.kinds.iter().filter(|&&kind| kind != RowKind::Dirichlet).count()
+    }
+
+    /// Typical distance of nodes, the least one for graded clouds.
+    pub(crate) fn spacing(&self) -> f64 {
+        self.discrete.cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b))
+    }
+}
+
+pub(crate) fn solve_in<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     checkpoint: Option<&Checkpoint>,
@@ -163,7 +190,7 @@ fn execute_in<const D: usize>(
     progress.stage(Stage::Estimate);
     let before = Instant::now();
     let estimate = if plan.runs(Stage::Estimate) {
-        estimate::estimate(whole, plan, &solved)?
+        estimate(whole, plan, &solved)?
     } else {
         Estimate { l2: None, why_not: Some("not asked for".to_owned()) }
     };

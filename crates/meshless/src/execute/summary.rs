@@ -28,8 +28,8 @@ pub(super) fn report<const D: usize>(
     Report {
         title: scene.title.clone(),
         dimension: D,
-        unknowns: solved.discrete.cloud.len() - count(RowKind::Dirichlet),
-        spacing: solved.discrete.cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b)),
+        unknowns: solved.unknowns(),
+        spacing: solved.spacing(),
         method: plan.method.name.as_str().to_owned(),
         order: plan.method.params.order(),
         contrast: problem.contrast(),
@@ -37,6 +37,7 @@ pub(super) fn report<const D: usize>(
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),
         errors,
         estimate,
+        accuracy: None,
         extrema: Extrema { min, max },
         solver: SolverReport {
             name: info.name.to_string(),

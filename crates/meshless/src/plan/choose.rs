@@ -3,7 +3,7 @@
 use meshless_sparse::{MultigridParams, PreconditionerKind, SolverKind, SolverParams};
 
 use super::effects::{Effect, Survey};
-use super::{MethodParams, MethodPlan, Skipped, Stage, method};
+use super::{AccuracyPlan, MethodParams, MethodPlan, Skipped, Stage, method};
 use crate::Error;
 use crate::scene::{InterfacesName, MethodName, Scene, SolverName};
 
@@ -37,17 +37,30 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
         let message = "the method \"particle-difference-extended\" solves steady scenes only";
         return Err(time.place.error(message, "use \"particle-difference\"").into());
     }
-    let (name, why) = match named {
-        MethodName::Auto if slits => {
+    let accuracy = AccuracyPlan::new(scene).filter(|_| !slits);
+    let mut order = scene.method.order;
+    let (name, why) = match (named, accuracy) {
+        (MethodName::Auto, _) if slits => {
             (MethodName::ParticleDifference, "a slit: stencils that do not see through it".to_owned())
         }
-        MethodName::Auto if survey.has_interface() => (
+        (MethodName::Auto, Some(goal)) => {
+            let choice = goal.choose(scene, survey);
+            order = choice.order;
+            (choice.name, choice.why)
+        }
+        (MethodName::Auto, None) if survey.has_interface() => (
             MethodName::GfdmHybrid,
             "something jumps at an interface: balances there, stencils elsewhere".to_owned(),
         ),
-        MethodName::Auto => (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned()),
-        name => (name, "asked for by the scene".to_owned()),
+        (MethodName::Auto, None) => {
+            (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned())
+        }
+        (name, _) => {
+            order = order.or_else(|| accuracy?.order(name, scene.dimension));
+            (name, "asked for by the scene".to_owned())
+        }
     };
+    let scene = &scene.with_order(order);
     method::check(name, scene)?;
     let params = MethodParams::new(name, scene, survey);
     let dimension = scene.dimension;
@@ -141,6 +154,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(exact, Stage::Errors, "the scene has no exact solution");
     decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
     decide(true, Stage::Estimate, "");
+    decide(scene.accuracy.is_some(), Stage::Refinement, "no error to reach is given");
     decide(scene.output.vtu, Stage::Diagnosis, "no field output asks for it");
     decide(scene.output.vtu, Stage::Vtu, "not asked for");
     decide(scene.output.plot, Stage::Plot, "not asked for");

@@ -3,7 +3,7 @@
 use meshless_sparse::SolverParams;
 
 use super::effects::{Effect, Survey};
-use super::{MethodParams, MethodPlan, Plan, Predicted, Skipped, Stage};
+use super::{AccuracyPlan, MethodParams, MethodPlan, Plan, Predicted, Skipped, Stage};
 use crate::scene::{MethodName, Scene};
 use crate::{Error, MAX_NODES};
 
@@ -46,6 +46,7 @@ pub(super) fn plan(scene: &Scene, survey: Survey) -> Result<Plan, Error> {
         // Nothing fixes a constant because nothing is needed to: u decays, or grows as it must.
         effects: survey.effects.into_iter().filter(|e| !matches!(e, Effect::PureNeumann)).collect(),
         solver: SolverParams::default(),
+        accuracy: AccuracyPlan::new(scene),
         stages,
         skipped,
         predicted: Predicted {

@@ -3,6 +3,7 @@
 //! A plan is made by a pure function of the scene, [`Plan::new`]; it builds no cloud and solves nothing. Execution does
 //! what the plan says and nothing else, so what a plan skips costs nothing.
 
+mod accuracy;
 mod choose;
 mod effects;
 mod free_space;
@@ -15,6 +16,7 @@ use meshless_sparse::SolverParams;
 use crate::Error;
 use crate::scene::{MethodName, Scene};
 
+pub use accuracy::AccuracyPlan;
 pub use effects::Effect;
 pub use method::{FreeSpaceParams, MethodParams};
 pub use predict::Predicted;
@@ -30,6 +32,8 @@ pub struct Plan {
     pub method: MethodPlan,
     /// The linear solver.
     pub solver: SolverParams,
+    /// The error to reach by smaller and smaller spacings; without one the scene is solved once.
+    pub accuracy: Option<AccuracyPlan>,
     /// The stages that will run.
     pub stages: Vec<Stage>,
     /// What will not run, and why.
@@ -94,6 +98,8 @@ pub enum Stage {
     Estimate,
     /// Condition, residual and signs of every node's stencil and row.
     Diagnosis,
+    /// Solve anew at smaller spacings until the estimate meets the tolerance.
+    Refinement,
     /// Write the fields for ParaView.
     Vtu,
     /// Draw the solution.
@@ -125,6 +131,7 @@ impl Plan {
             effects: survey.effects,
             method,
             solver,
+            accuracy: AccuracyPlan::new(scene),
             stages,
             skipped,
             predicted,

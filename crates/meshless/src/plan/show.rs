@@ -4,7 +4,7 @@ use std::fmt;
 
 use meshless_sparse::{AUTO_RESTART, SolverKind};
 
-use super::{MethodParams, Plan, Stage};
+use super::{AccuracyPlan, MethodParams, Plan, Stage};
 
 impl Stage {
     /// The name used in reports.
@@ -30,6 +30,7 @@ impl Stage {
             Self::Probes => "probes",
             Self::Estimate => "error estimate",
             Self::Diagnosis => "stencil diagnosis",
+            Self::Refinement => "refinement",
             Self::Vtu => "vtu output",
             Self::Plot => "plot",
         }
@@ -63,6 +64,10 @@ impl fmt::Display for Plan {
         )?;
         writeln!(f, "method      {} ({})", self.method.name.as_str(), self.method.why)?;
         writeln!(f, "solver      {}", self.solver_name())?;
+        if let Some(accuracy) = &self.accuracy {
+            let AccuracyPlan { tolerance, max_nodes } = accuracy;
+            writeln!(f, "accuracy    relative error {tolerance:.1e}, at most {max_nodes:.0} nodes")?;
+        }
         let stages: Vec<&str> = self.stages.iter().map(|s| s.name()).collect();
         writeln!(f, "stages      {}", stages.join(" -> "))?;
         for skipped in &self.skipped {

@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 
+use super::accuracy::{AccuracySpec, first_spacing};
 use super::error::SceneError;
+use super::expression::ExprField;
 use super::free_space::FREE_SPACE;
-use super::reader::Table;
+use super::reader::{Table, Value};
 use super::shapes::{bounds, keys_with_shape, refuse_future_shapes, required_shape};
 use super::spec::{
     ALL_FACES, BOX_FACES, DomainSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec, ShapeSpec,
@@ -37,17 +39,38 @@ pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     Ok(DomainSpec { shape, bounds, place: table.place })
 }
 
-pub(super) fn points(root: &Table<'_>) -> Result<PointsSpec, SceneError> {
+/// With `[accuracy]` the spacing, or all of `[points]`, may be absent.
+pub(super) fn points(
+    root: &Table<'_>,
+    domain: &DomainSpec,
+    accuracy: Option<&AccuracySpec>,
+) -> Result<PointsSpec, SceneError> {
     const LAYOUTS: [(&str, LayoutName); 4] = [
         ("grid", LayoutName::Grid),
         ("jittered", LayoutName::Jittered),
         ("scattered", LayoutName::Scattered),
         ("irregular", LayoutName::Irregular),
     ];
-    let table = root.require("points")?.table()?;
+    let first = || accuracy.and_then(|spec| Some((first_spacing(domain, root.dimension)?, &spec.place)));
+    let Some(table) = root.get("points").map(Value::table).transpose()? else {
+        return match first() {
+            Some((spacing, place)) => Ok(PointsSpec {
+                spacing: ExprField::constant(spacing, place),
+                layout: LayoutName::Irregular,
+                seed: DEFAULT_SEED,
+                place: place.clone(),
+            }),
+            None => Err(root.missing("points", "")),
+        };
+    };
     table.allow(&["spacing", "layout", "seed"])?;
     Ok(PointsSpec {
-        spacing: table.require("spacing")?.expression()?.check_positive()?,
+        spacing: match (table.get("spacing"), first()) {
+            (None, Some((spacing, place))) => ExprField::constant(spacing, place),
+            (value, _) => {
+                value.map_or_else(|| table.require("spacing"), Ok)?.expression()?.check_positive()?
+            }
+        },
         layout: match table.get("layout") {
             Some(value) => value.one_of(&LAYOUTS)?,
             None => LayoutName::Irregular,

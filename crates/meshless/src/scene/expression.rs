@@ -41,6 +41,11 @@ impl ExprField {
         parse(text, &place, Variables { dimension, time: false })?.check_positive()
     }
 
+    /// A number that the scene leaves open; errors about it show `place`.
+    pub(super) fn constant(value: f64, place: &Place) -> Self {
+        Self { text: value.to_string(), expr: Expr::constant(value), place: place.clone() }
+    }
+
     /// Whether the value changes with time, in a scene of that dimension.
     pub(crate) fn varies_in_time(&self, dimension: usize) -> bool {
         self.expr.depends_on(dimension)

@@ -1,4 +1,4 @@
-//! Scenes in free space: `domain.free_space`, `[accuracy]`, `[particles]`, and the options of the method.
+//! Scenes in free space: `domain.free_space`, `[particles]`, and the options of the method.
 
 use std::path::PathBuf;
 
@@ -60,8 +60,6 @@ pub struct FreeSpaceSpec {
     pub kernel: Option<GreenName>,
     /// Smoothing radius of a Gaussian kernel over the spacing.
     pub sigma: Option<f64>,
-    /// Relative L2 error to reach: the spacing is halved until it is expected.
-    pub tolerance: Option<f64>,
     /// Particles besides the source of the regions.
     pub particles: Option<ParticlesSpec>,
 }
@@ -101,14 +99,9 @@ pub(super) fn free_space(root: &Table<'_>) -> Result<Option<FreeSpaceSpec>, Scen
             );
         }
     }
-    let tolerance = match root.get("accuracy") {
-        Some(value) => Some(value.subtable(&["tolerance"])?.require("tolerance")?.positive()?),
-        None => None,
-    };
     Ok(Some(FreeSpaceSpec {
         kernel,
         sigma: method("sigma").map(|value| value.positive()).transpose()?,
-        tolerance,
         particles: root.get("particles").map(|value| particles(&value)).transpose()?,
     }))
 }

@@ -8,6 +8,7 @@
 //! What a file can do is bounded: its length, the depth of its tables and the size of its expressions are limited,
 //! and it names no other file.
 
+mod accuracy;
 mod boundaries;
 mod domain;
 mod error;
@@ -29,6 +30,7 @@ mod time;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use accuracy::AccuracySpec;
 pub use error::SceneError;
 pub use expression::ExprField;
 pub use free_space::{FreeSpaceSpec, GreenName, ParticlesSpec, SpreadName};
@@ -70,6 +72,8 @@ pub struct Scene {
     pub slits: Vec<SlitSpec>,
     /// Conditions, at least one unless the domain is free space; see [`BoundarySpec`] for which one holds where several match.
     pub boundaries: Vec<BoundarySpec>,
+    /// The error to reach; a scene without one is solved at its spacing.
+    pub accuracy: Option<AccuracySpec>,
     /// What the scene overrides of the plan's choices.
     pub method: MethodSpec,
     /// Where the domain is all of space: how the problem is solved there. There are no conditions, holes, interfaces,
@@ -120,6 +124,13 @@ impl Scene {
         let mut error = place.error(message, help);
         error.key = "boundaries".to_owned();
         error
+    }
+
+    /// The same scene with the order that was chosen for it.
+    pub(crate) fn with_order(&self, order: Option<usize>) -> Self {
+        let mut scene = self.clone();
+        scene.method.order = order;
+        scene
     }
 
     /// Names of the faces that a boundary condition can be given for, `all` excepted.

@@ -8,7 +8,7 @@ use super::error::SceneError;
 use super::reader::Table;
 use super::source::{MAX_FILE_BYTES, Place, Source};
 use super::spec::OutputSpec;
-use super::{Scene, boundaries, domain, free_space, method, regions, slits, time};
+use super::{Scene, accuracy, boundaries, domain, free_space, method, regions, slits, time};
 
 const KEYS: [&str; 15] = [
     "title",
@@ -28,10 +28,6 @@ const KEYS: [&str; 15] = [
     "output",
 ];
 
-/// Sections that are recognised and not built.
-const FUTURE_SECTIONS: [(&str, &str); 1] =
-    [("accuracy", "remove the section, and choose `spacing` by the reported estimate")];
-
 pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     if source.text.len() > MAX_FILE_BYTES {
         return Err(source.too_long(source.text.len() as u64));
@@ -40,16 +36,12 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     let root = Table::root(source, parsed.get_ref());
     root.allow(&KEYS)?;
     let open = free_space::is_open(&root);
-    for (key, help) in FUTURE_SECTIONS.into_iter().filter(|_| !open) {
-        if let Some(value) = root.get(key) {
-            return Err(value.not_supported(&format!("[{key}]"), help));
-        }
-    }
     let dimension = root.require("dimension")?.integer(1, 3)? as usize;
     let unsteady = root.has("time");
     let root = root.with_dimension(dimension).with_time(unsteady);
     let domain = domain::domain(&root)?;
-    let points = domain::points(&root)?;
+    let accuracy = accuracy::accuracy(&root)?;
+    let points = domain::points(&root, &domain, accuracy.as_ref())?;
     let holes = domain::holes(&root)?;
     let regions = regions::regions(&root)?;
     Ok(Scene {
@@ -63,6 +55,7 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
         time: time::time(&root)?,
         probes: probes(&root)?,
         output: output(&root)?,
+        accuracy,
         domain,
         points,
         holes,

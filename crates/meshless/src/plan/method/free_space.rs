@@ -25,7 +25,7 @@ pub(super) fn params(scene: &Scene) -> FreeSpaceParams {
         kernel: spec.and_then(|s| s.kernel),
         order: scene.method.order,
         sigma: spec.and_then(|s| s.sigma),
-        tolerance: spec.and_then(|s| s.tolerance),
+        tolerance: scene.accuracy.as_ref().map(|a| a.tolerance),
     }
 }
 

@@ -1,0 +1,150 @@
+//! Solving to a tolerance: clouds of smaller and smaller spacing until the estimate of the error says that it is met.
+//!
+//! Every rung is a solve of the same scene with another spacing and a plan of its own. The next spacing follows from the
+//! estimates: the order at which they fall, or that of the method while there is one estimate only. A cloud that does
+//! not resolve a layer, a gap or a region is refined as well. A tolerance counts as met where twice the estimate is
+//! below it, on the second cloud at the earliest unless it is far below: one estimate alone may be small by chance.
+
+use std::time::Instant;
+
+use super::{Checkpoint, Progress, Solution, execute_once};
+use crate::plan::{AccuracyPlan, Effect, Plan};
+use crate::report::{AccuracyReport, Rung};
+use crate::scene::Scene;
+use crate::{Error, build};
+
+/// How much of the tolerance the estimate may take up.
+const SHARE: f64 = 0.5;
+
+/// The same on the first cloud.
+const SHARE_AT_ONCE: f64 = 0.01;
+
+/// Clouds that are tried at most.
+const MAX_RUNGS: usize = 12;
+
+/// Limits of the ratio of a spacing to the one before.
+const RATIOS: (f64, f64) = (0.35, 0.8);
+
+/// The ratio where the cloud was too coarse to be solved on, or gave no estimate.
+const BLIND_RATIO: f64 = 0.7;
+
+/// The order that is counted on at least, and how far above that of the method an observed one is believed.
+const LEAST_ORDER: f64 = 0.5;
+const ORDER_ABOVE: f64 = 1.0;
+
+/// Solves a scene to the tolerance of its plan.
+pub(super) fn refine(
+    scene: &Scene,
+    plan: &Plan,
+    goal: AccuracyPlan,
+    checkpoint: Option<&Checkpoint>,
+    progress: &mut dyn Progress,
+) -> Result<Solution, Error> {
+    if let Some(checkpoint) = checkpoint {
+        return Err(Error::Checkpoint {
+            path: checkpoint.path.clone(),
+            reason:
+                "a tolerance takes several runs, each on a cloud of its own: give a spacing instead of it"
+                    .to_owned(),
+        });
+    }
+    let mut rungs: Vec<Rung> = Vec::new();
+    let mut refused = None;
+    let mut factor = 1.0;
+    while rungs.len() < MAX_RUNGS {
+        let rung_scene = build::with_spacing_times(scene, factor);
+        let rung_plan = Plan::new(&rung_scene)?;
+        if rung_plan.predicted.unknowns > goal.max_nodes {
+            let needed = rung_plan.predicted.unknowns;
+            return Err(unmet(scene, goal, &rungs, refused, Some(needed)));
+        }
+        let start = Instant::now();
+        let (estimate, rung, solution) = match execute_once(&rung_scene, &rung_plan, None, progress) {
+            Ok(solution) => {
+                let report = &solution.report;
+                let estimate = report.estimate.l2;
+                let rung = Rung { spacing: report.spacing, unknowns: report.unknowns, ..Rung::default() };
+                (estimate, rung, Some(solution))
+            }
+            Err(error) if error.is_too_coarse() => {
+                let spacing = rung_scene.points.spacing.as_constant().unwrap_or(f64::NAN);
+                let why = Some(error.to_string().lines().next().unwrap_or_default().to_owned());
+                refused = Some(error);
+                (None, Rung { spacing, why, ..Rung::default() }, None)
+            }
+            Err(error) => return Err(error),
+        };
+        rungs.push(Rung { estimate, seconds: start.elapsed().as_secs_f64(), ..rung });
+        let share = if rungs.len() > 1 { SHARE } else { SHARE_AT_ONCE };
+        if let Some(mut solution) = solution
+            && estimate.is_some_and(|e| e <= share * goal.tolerance)
+        {
+            solution.report.accuracy = Some(AccuracyReport { tolerance: goal.tolerance, rungs });
+            solution.report.seconds.total =
+                solution.report.accuracy.iter().flat_map(|a| &a.rungs).map(|r| r.seconds).sum();
+            return Ok(solution);
+        }
+        factor *= next_ratio(&rungs, nominal_order(plan), SHARE * goal.tolerance);
+    }
+    Err(unmet(scene, goal, &rungs, refused, None))
+}
+
+/// The order that the error of the plan's method falls at.
+fn nominal_order(plan: &Plan) -> f64 {
+    let jumps = plan
+        .effects
+        .iter()
+        .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
+    let params = &plan.method.params;
+    let order = if jumps { params.interface_order() } else { params.order() };
+    if plan.effects.contains(&Effect::Slits) { 1.0 } else { order as f64 }
+}
+
+/// The ratio of the next spacing to the last one.
+fn next_ratio(rungs: &[Rung], nominal: f64, wanted: f64) -> f64 {
+    let mut known =
+        rungs.iter().rev().filter_map(|r| r.estimate.filter(|e| *e > 0.0).map(|e| (r.spacing, e)));
+    let Some((spacing, last)) = known.next() else { return BLIND_RATIO };
+    if rungs.last().is_some_and(|r| r.estimate.is_none()) {
+        return BLIND_RATIO;
+    }
+    let observed = known.next().map(|(before, error)| (error / last).ln() / (before / spacing).ln());
+    let order = observed.map_or(nominal, |q| q.clamp(LEAST_ORDER, nominal + ORDER_ABOVE));
+    (wanted / last).powf(1.0 / order).clamp(RATIOS.0, RATIOS.1)
+}
+
+/// Why the tolerance was not met: what was reached, and what to do.
+fn unmet(
+    scene: &Scene,
+    goal: AccuracyPlan,
+    rungs: &[Rung],
+    refused: Option<Error>,
+    needed: Option<f64>,
+) -> Error {
+    let best = rungs.iter().filter_map(|r| r.estimate.map(|e| (e, r))).min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((estimate, rung)) = best else {
+        // No cloud gave an estimate: the first thing to know is why.
+        return refused.unwrap_or_else(|| {
+            let message = "no cloud that is allowed gives an estimate of the error";
+            located(scene, message.to_owned(), "allow more nodes by `max_nodes`, or give a spacing")
+        });
+    };
+    let message = format!(
+        "a relative error of {:.1e} was not reached: the estimate is {estimate:.1e} on {} nodes of spacing {:.3e}",
+        goal.tolerance, rung.unknowns, rung.spacing
+    );
+    let help = match needed {
+        Some(needed) => format!(
+            "the next cloud would have {needed:.1e} nodes, and {:.0} are allowed: raise `max_nodes`, take a larger \
+             tolerance or another order, or grade the cloud towards corners",
+            goal.max_nodes
+        ),
+        None => "the error does not fall any more: take a larger tolerance, or another method".to_owned(),
+    };
+    located(scene, message, &help)
+}
+
+fn located(scene: &Scene, message: String, help: &str) -> Error {
+    let place = scene.accuracy.as_ref().map_or(&scene.points.place, |spec| &spec.place);
+    Error::Unmet(Box::new(place.error(message, help)))
+}

@@ -1,0 +1,72 @@
+//! Decisions where a scene gives an error to reach.
+
+use super::effects::Survey;
+use crate::scene::{MethodName, Scene};
+
+/// An error to reach, and how far to go for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AccuracyPlan {
+    /// Relative L2 error of u.
+    pub tolerance: f64,
+    /// Nodes of the finest cloud that may be tried.
+    pub max_nodes: f64,
+}
+
+/// Tolerance from which on methods that keep the maximum principle are good enough.
+const COARSE: f64 = 2e-2;
+
+/// Tolerances down to which the sharp method takes order 4, 6 and so on, by dimension; the last order below.
+const SHARP_ORDERS: [&[(f64, usize)]; 3] =
+    [&[(1e-3, 4), (1e-6, 6), (0.0, 8)], &[(1e-3, 4), (1e-5, 6), (0.0, 8)], &[(1e-4, 4), (0.0, 6)]];
+
+/// Tolerances down to which stencils take order 2, 4 and so on where nothing jumps and the sharp method does not serve.
+const STENCIL_ORDERS: [(f64, usize); 3] = [(1e-3, 2), (1e-5, 4), (0.0, 6)];
+
+/// What serves a tolerance.
+pub(super) struct Choice {
+    pub(super) name: MethodName,
+    pub(super) order: Option<usize>,
+    pub(super) why: String,
+}
+
+impl AccuracyPlan {
+    pub(super) fn new(scene: &Scene) -> Option<Self> {
+        let spec = scene.accuracy.as_ref()?;
+        Some(Self { tolerance: spec.tolerance, max_nodes: spec.max_nodes as f64 })
+    }
+
+    /// Method and order for a scene that names no method.
+    pub(super) fn choose(&self, scene: &Scene, survey: &Survey) -> Choice {
+        let tolerance = self.tolerance;
+        let reached = |orders: &[(f64, usize)]| orders.iter().find(|o| tolerance >= o.0).map(|o| o.1);
+        let choice = |name, order, why: &str| Choice {
+            name,
+            order: scene.method.order.or(order),
+            why: format!("a tolerance of {tolerance:.1e}: {why}"),
+        };
+        let jumps = survey.has_interface();
+        if jumps && tolerance >= COARSE {
+            return choice(
+                MethodName::GfdmHybrid,
+                None,
+                "balances at interfaces, stencils elsewhere, will do",
+            );
+        }
+        if scene.time.is_none() {
+            let order = reached(SHARP_ORDERS[scene.dimension - 1]);
+            return choice(MethodName::Sharp, order, "high order on both sides of interfaces");
+        }
+        if jumps {
+            let why = "second order up to interfaces, also in time";
+            return choice(MethodName::ParticleDifference, None, why);
+        }
+        choice(MethodName::GfdmClassical, reached(&STENCIL_ORDERS), "stencils, also in time")
+    }
+
+    /// The order of a method that the scene names without one.
+    pub(super) fn order(&self, name: MethodName, dimension: usize) -> Option<usize> {
+        let orders = SHARP_ORDERS[dimension - 1];
+        let order = orders.iter().find(|o| self.tolerance >= o.0).map(|o| o.1);
+        order.filter(|_| name == MethodName::Sharp)
+    }
+}

@@ -1,0 +1,128 @@
+//! Scenes that give an error to reach: it is reached, or the answer says how far it came.
+
+use meshless::plan::{Plan, Stage};
+use meshless::scene::{MethodName, Scene};
+use meshless::{Error, Overrides, Silent, Solution, execute};
+use meshless_tests::kraus;
+use meshless_tests::sharp::circle_mode;
+
+fn with_tolerance(text: &str, tolerance: f64) -> Scene {
+    let mut scene = Scene::parse(text, "scene.toml").expect("a scene");
+    Overrides { tolerance: Some(tolerance), ..Overrides::default() }.apply(&mut scene).expect("a tolerance");
+    scene
+}
+
+fn solve(scene: &Scene) -> Result<Solution, Error> {
+    execute(scene, &Plan::new(scene)?, &mut Silent)
+}
+
+/// The true error is what counts, not the estimate.
+fn reaches(text: &str, tolerances: &[f64]) {
+    for &tolerance in tolerances {
+        let report = solve(&with_tolerance(text, tolerance)).expect("within reach").report;
+        let error = report.errors.expect("an exact solution").l2;
+        let accuracy = report.accuracy.expect("a tolerance");
+        assert!(error <= tolerance, "{}: {error:.2e} for {tolerance:.0e}, {accuracy:?}", report.title);
+        assert!(accuracy.rungs.iter().all(|r| r.seconds > 0.0));
+        let last = accuracy.rungs.last().and_then(|r| r.estimate).expect("an estimate");
+        let share = if accuracy.rungs.len() > 1 { 0.5 } else { 0.01 };
+        assert!(last <= share * tolerance && report.estimate.l2 == Some(last));
+    }
+}
+
+#[test]
+fn tolerances_are_met_at_a_contrast_of_1e10() {
+    reaches(&kraus::interior(1e10, kraus::SUPPORT * 0.15, 1), &[1e-2, 1e-4, 1e-8]);
+    reaches(&circle_mode(1e10, 0.2, 1), &[1e-3, 1e-5]);
+}
+
+#[test]
+fn a_loose_tolerance_is_met_by_the_method_that_keeps_the_maximum_principle() {
+    let scene = with_tolerance(&kraus::interior(1e4, kraus::SUPPORT * 0.15, 1), 0.05);
+    let plan = Plan::new(&scene).expect("a plan");
+    assert_eq!(plan.method.name, MethodName::GfdmHybrid);
+    let report = solve(&scene).expect("within reach").report;
+    assert!(report.errors.expect("an exact solution").l2 <= 0.05);
+}
+
+#[test]
+fn the_plan_chooses_order_by_tolerance_and_leaves_named_methods_alone() {
+    let text = kraus::interior(1e4, kraus::SUPPORT * 0.15, 1);
+    let plan = |tolerance: f64, method: Option<&str>| {
+        let mut scene = with_tolerance(&text, tolerance);
+        Overrides { method, ..Overrides::default() }.apply(&mut scene).expect("a method");
+        Plan::new(&scene).expect("a plan")
+    };
+    let chosen = |tolerance| {
+        let plan = plan(tolerance, None);
+        assert!(plan.runs(Stage::Refinement) && plan.accuracy.is_some_and(|a| a.tolerance == tolerance));
+        (plan.method.name, plan.method.params.order())
+    };
+    assert_eq!(chosen(1e-2), (MethodName::Sharp, 4));
+    assert_eq!(chosen(1e-4), (MethodName::Sharp, 6));
+    assert_eq!(chosen(1e-9), (MethodName::Sharp, 8));
+    assert_eq!(plan(1e-9, Some("particle-difference")).method.name, MethodName::ParticleDifference);
+    let steady = Plan::new(&Scene::parse(&text, "scene.toml").expect("a scene")).expect("a plan");
+    assert!(!steady.runs(Stage::Refinement) && steady.accuracy.is_none());
+}
+
+#[test]
+fn a_layer_thinner_than_the_first_cloud_is_refined_until_it_is_resolved() {
+    let text = r#"title = "Thin coat"
+dimension = 2
+[domain]
+box = { min = [0.0, 0.0], max = [1.0, 1.0] }
+[[regions]]
+name = "core"
+level_set = "x - 0.5"
+diffusivity = 1
+[[regions]]
+name = "coat"
+level_set = "x - 0.52"
+diffusivity = 0.01
+[[regions]]
+name = "outside"
+diffusivity = 1
+[[boundaries]]
+face = "left"
+dirichlet = 0
+[[boundaries]]
+face = "right"
+dirichlet = 1
+[[boundaries]]
+face = "all"
+neumann = 0
+[[probes]]
+at = [0.51, 0.5]
+[accuracy]
+tolerance = 1e-3
+"#;
+    let report = solve(&Scene::parse(text, "coat.toml").expect("a scene")).expect("within reach").report;
+    // Resistances 0.5, 2 and 0.48 in series; half of the coat is passed at the probe.
+    let expected = (0.5 + 1.0) / (0.5 + 2.0 + 0.48);
+    let value = report.probes[0].value.expect("inside");
+    assert!((value - expected).abs() <= 2e-3 * expected, "{value} for {expected}");
+}
+
+#[test]
+fn a_tolerance_out_of_reach_says_how_far_it_came() {
+    let text = kraus::interior(1e4, kraus::SUPPORT * 0.1, 1);
+    let text = format!(
+        "{text}\n[accuracy]\ntolerance = 1e-6\nmax_nodes = 3000\n\n[method]\nname = \"gfdm-hybrid\"\n"
+    );
+    let error = solve(&Scene::parse(&text, "scene.toml").expect("a scene")).expect_err("first order only");
+    assert!(!error.is_input());
+    let message = error.to_string();
+    assert!(message.contains("was not reached") && message.contains("max_nodes"), "{message}");
+    assert!(message.starts_with("scene.toml:"), "{message}");
+}
+
+#[test]
+fn a_checkpoint_and_a_tolerance_do_not_go_together() {
+    let scene = with_tolerance(&kraus::interior(1e4, kraus::SUPPORT * 0.1, 1), 1e-3);
+    let plan = Plan::new(&scene).expect("a plan");
+    let checkpoint =
+        meshless::Checkpoint { path: "run.checkpoint".into(), every: std::time::Duration::from_secs(1) };
+    let outcome = meshless::execute_from(&scene, &plan, Some(&checkpoint), &mut Silent);
+    assert!(matches!(outcome, Err(Error::Checkpoint { .. })));
+}
