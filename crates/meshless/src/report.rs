@@ -149,6 +149,8 @@ pub struct SolverReport {
     pub residual: f64,
     /// Componentwise backward error.
     pub backward_error: f64,
+    /// What ended the solve: `residual`, which met the tolerance, or `round-off`, beyond which no solution fits better.
+    pub criterion: String,
     /// Constants of floating stiff regions that were solved for beside the nodes.
     pub floating_constants: usize,
 }

@@ -58,6 +58,6 @@ pub use multigrid::{
 };
 pub use precond::{IncompleteLu, Jacobi, Preconditioner, PreconditionerKind, ilu0, ilut};
 pub use solver::{
-    AUTO_DIRECT_MAX, AUTO_RESTART, DEFAULT_TOLERANCE, LinearOperator, Prepared, SolveError, SolveInfo,
-    SolverKind, SolverParams, solve,
+    AUTO_DIRECT_MAX, AUTO_RESTART, Criterion, DEFAULT_TOLERANCE, LinearOperator, Prepared, SolveError,
+    SolveInfo, SolverKind, SolverParams, solve,
 };

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 const BLOCK: usize = 4096;
 
 /// Elements from which a vector is worth sharing among threads.
-const PARALLEL_FROM: usize = 32 * BLOCK;
+const PARALLEL_FROM: usize = 8 * BLOCK;
 
 /// Independent partial sums within a block, for the sake of vector instructions.
 const LANES: usize = 8;

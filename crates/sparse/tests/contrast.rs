@@ -4,8 +4,8 @@ mod common;
 
 use common::{Grid, distance, grid, point, solve_without_subtraction};
 use meshless_sparse::{
-    ComponentInfo, DEFAULT_THRESHOLD, PreconditionerKind, SolveError, SolverKind, SolverParams, Split,
-    clusters, solve,
+    ComponentInfo, DEFAULT_THRESHOLD, MultigridParams, PreconditionerKind, SolveError, SolverKind,
+    SolverParams, Split, clusters, solve,
 };
 
 const NODES: usize = 60;
@@ -141,9 +141,12 @@ fn several_discs_are_accurate() {
 #[test]
 fn iterative_methods_reach_the_same_solution() {
     let ilut = PreconditionerKind::Ilut { fill: 5, drop: 1e-3 };
-    for (kind, preconditioner) in
-        [(SolverKind::BiCgStab { l: 2 }, PreconditionerKind::Ilu0), (SolverKind::Gmres { restart: 80 }, ilut)]
-    {
+    let levels = MultigridParams { coarsest: 40, ..MultigridParams::default() };
+    for (kind, preconditioner) in [
+        (SolverKind::BiCgStab { l: 2 }, PreconditionerKind::Ilu0),
+        (SolverKind::Gmres { restart: 80 }, ilut),
+        (SolverKind::Multigrid, PreconditionerKind::Multigrid(levels)),
+    ] {
         let params = SolverParams { kind, preconditioner, tolerance: 1e-13, ..SolverParams::default() };
         for scene in [disc(1e10), rings([1.0, 1e5, 1e10], 1.0), rings([1.0, 1e-10, 1.0], 0.0)] {
             let (_, split) = scene.errors(&params);

@@ -57,6 +57,8 @@ pub(super) fn bordered<const D: usize>(
         pinned.push(free.unwrap_or(known.len() / 2) as u32);
         columns.push((0..).zip(&discretization.volumes).map(|(row, &volume)| (row, volume)).collect());
     }
-    let system = Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?;
+    let scales = reduced.map.iter().map(|&node| constants.split.scale(node as usize)).collect();
+    let system =
+        Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?.with_scales(scales)?;
     Ok((system, reduced))
 }

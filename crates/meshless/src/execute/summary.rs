@@ -44,6 +44,7 @@ pub(super) fn report<const D: usize>(
             iterations: info.iterations,
             residual: info.residual,
             backward_error: info.backward_error,
+            criterion: info.criterion.as_str().to_owned(),
             floating_constants: solved.system.floating_constants,
         },
         nodes: NodeReport {

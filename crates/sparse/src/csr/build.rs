@@ -111,23 +111,38 @@ pub(crate) fn build_rows<S, E: From<MatrixError> + Send>(
 }
 
 fn join(nrows: usize, ncols: usize, blocks: &[Block]) -> (Csr, Vec<f64>) {
-    let nnz = blocks.iter().map(|b| b.indices.len()).sum();
+    let row_sums = blocks.iter().flat_map(|b| b.row_sums.iter().copied()).collect();
+    let parts = blocks.iter().map(|b| (&b.lengths[..], &b.indices[..], &b.values[..])).collect();
+    (joined(nrows, ncols, parts), row_sums)
+}
+
+/// The matrix that blocks of rows, each with its lengths of rows, its columns and its values, make up. Copies in parallel.
+pub(crate) fn joined(nrows: usize, ncols: usize, parts: Vec<(&[usize], &[u32], &[f64])>) -> Csr {
+    let nnz = parts.iter().map(|p| p.1.len()).sum();
     let mut offsets = Vec::with_capacity(nrows + 1);
-    let mut indices = Vec::with_capacity(nnz);
-    let mut values = Vec::with_capacity(nnz);
-    let mut row_sums = Vec::with_capacity(nrows);
     let mut end = 0;
     offsets.push(0);
-    for block in blocks {
-        for length in &block.lengths {
+    for (lengths, _, _) in &parts {
+        offsets.extend(lengths.iter().map(|length| {
             end += length;
-            offsets.push(end);
-        }
-        indices.extend_from_slice(&block.indices);
-        values.extend_from_slice(&block.values);
-        row_sums.extend_from_slice(&block.row_sums);
+            end
+        }));
     }
-    (Csr::from_trusted(ncols, offsets, indices, values), row_sums)
+    let (mut indices, mut values) = (vec![0; nnz], vec![0.0; nnz]);
+    let mut places = Vec::with_capacity(parts.len());
+    let (mut rest_indices, mut rest_values) = (&mut indices[..], &mut values[..]);
+    for (_, columns, row) in parts {
+        let (own_indices, others) = rest_indices.split_at_mut(columns.len());
+        rest_indices = others;
+        let (own_values, others) = rest_values.split_at_mut(row.len());
+        rest_values = others;
+        places.push((own_indices, columns, own_values, row));
+    }
+    places.into_par_iter().for_each(|(own_indices, columns, own_values, row)| {
+        own_indices.copy_from_slice(columns);
+        own_values.copy_from_slice(row);
+    });
+    Csr::from_trusted(ncols, offsets, indices, values)
 }
 
 impl Csr {

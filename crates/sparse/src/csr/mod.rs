@@ -6,9 +6,9 @@ mod product;
 mod transform;
 
 pub use build::RowBuilder;
-pub(crate) use build::build_rows;
+pub(crate) use build::{build_rows, joined};
 pub(crate) use multiply::computed_rows;
-pub(crate) use product::for_each_row;
+pub(crate) use product::{for_each_row, for_each_row_of};
 
 use crate::error::MatrixError;
 use sprs::CsMatViewI;
@@ -77,6 +77,11 @@ impl Csr {
     ) -> Self {
         debug_assert!(offsets.last() == Some(&indices.len()) && indices.len() == values.len());
         Self { ncols, offsets, indices, values }
+    }
+
+    /// Offsets, columns and values.
+    pub(crate) fn into_parts(self) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
+        (self.offsets, self.indices, self.values)
     }
 
     /// The identity of `n` rows.

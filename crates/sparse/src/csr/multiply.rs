@@ -1,6 +1,7 @@
 //! Products of sparse matrices (Gustavson, ACM Trans. Math. Softw. 4, 1978), in parallel over blocks of rows.
 
 use super::Csr;
+use super::build::joined;
 use crate::error::MatrixError;
 use rayon::prelude::*;
 
@@ -84,20 +85,8 @@ pub(crate) fn computed_rows(
             },
         )
         .collect();
-    let nnz = blocks.iter().map(|b| b.indices.len()).sum();
-    let mut offsets = Vec::with_capacity(nrows + 1);
-    let (mut indices, mut values) = (Vec::with_capacity(nnz), Vec::with_capacity(nnz));
-    let mut end = 0;
-    offsets.push(0);
-    for block in blocks {
-        offsets.extend(block.lengths.iter().map(|length| {
-            end += length;
-            end
-        }));
-        indices.extend_from_slice(&block.indices);
-        values.extend_from_slice(&block.values);
-    }
-    Csr::from_trusted(ncols, offsets, indices, values)
+    let parts = blocks.iter().map(|b| (&b.lengths[..], &b.indices[..], &b.values[..])).collect();
+    joined(nrows, ncols, parts)
 }
 
 impl Csr {
@@ -124,7 +113,9 @@ impl Csr {
 
     /// The first entry that is infinite or not a number, as an error.
     pub(crate) fn require_finite(&self) -> Result<(), MatrixError> {
-        let Some(k) = self.values.iter().position(|v| !v.is_finite()) else { return Ok(()) };
+        let Some(k) = self.values.par_iter().with_min_len(1 << 16).position_first(|v| !v.is_finite()) else {
+            return Ok(());
+        };
         let row = self.offsets.partition_point(|&o| o <= k) - 1;
         Err(MatrixError::NotFinite { row, column: self.indices[k] as usize, value: self.values[k] })
     }

@@ -22,6 +22,25 @@ pub(crate) fn for_each_row(y: &mut [f64], f: impl Fn(usize, &mut f64) + Sync) {
     });
 }
 
+/// Calls `f(i, entries of row i)` for every row, in parallel over blocks of rows; `offsets` says where rows start.
+pub(crate) fn for_each_row_of(offsets: &[usize], entries: &mut [f64], f: impl Fn(usize, &mut [f64]) + Sync) {
+    let n = offsets.len() - 1;
+    let mut parts = Vec::with_capacity(n.div_ceil(ROWS_PER_TASK));
+    let mut rest = entries;
+    for first in (0..n).step_by(ROWS_PER_TASK) {
+        let last = n.min(first + ROWS_PER_TASK);
+        let (own, others) = rest.split_at_mut(offsets[last] - offsets[first]);
+        rest = others;
+        parts.push((first..last, own));
+    }
+    parts.into_par_iter().for_each(|(rows, own)| {
+        let start = offsets[rows.start];
+        for i in rows {
+            f(i, &mut own[offsets[i] - start..offsets[i + 1] - start]);
+        }
+    });
+}
+
 /// Independent partial sums of a row: one sum would wait for each addition before the next.
 const LANES: usize = 4;
 

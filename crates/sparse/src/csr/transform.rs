@@ -1,6 +1,6 @@
 //! Transposes, permutations, scaled rows.
 
-use super::Csr;
+use super::{Csr, for_each_row, for_each_row_of};
 use crate::error::MatrixError;
 
 impl Csr {
@@ -32,7 +32,9 @@ impl Csr {
     /// The diagonal, 0 where no entry is stored.
     #[must_use]
     pub fn diagonal(&self) -> Vec<f64> {
-        (0..self.nrows()).map(|i| self.get(i, i)).collect()
+        let mut diagonal = vec![0.0; self.nrows()];
+        for_each_row(&mut diagonal, |i, d| *d = self.get(i, i));
+        diagonal
     }
 
     /// The matrix in a new numbering of rows and columns alike: row `k` of the result is row `order[k]` of this one.
@@ -56,17 +58,12 @@ impl Csr {
     /// [`MatrixError::Length`], and [`MatrixError::NotFinite`] where a product overflows or a factor is not finite.
     pub fn row_scaled(&self, factors: &[f64]) -> Result<Self, MatrixError> {
         MatrixError::check_length("row factors", factors.len(), self.nrows())?;
-        let mut scaled = self.clone();
-        for (i, &factor) in factors.iter().enumerate() {
-            let range = self.offsets[i]..self.offsets[i + 1];
-            for k in range {
-                let value = scaled.values[k] * factor;
-                if !value.is_finite() {
-                    return Err(MatrixError::NotFinite { row: i, column: self.indices[k] as usize, value });
-                }
-                scaled.values[k] = value;
-            }
-        }
+        let mut values = vec![0.0; self.nnz()];
+        for_each_row_of(&self.offsets, &mut values, |i, scaled| {
+            scaled.iter_mut().zip(self.row(i).1).for_each(|(s, v)| *s = v * factors[i]);
+        });
+        let scaled = Self::from_trusted(self.ncols, self.offsets.clone(), self.indices.clone(), values);
+        scaled.require_finite()?;
         Ok(scaled)
     }
 

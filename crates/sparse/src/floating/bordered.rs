@@ -1,11 +1,10 @@
 //! Systems with a few extra unknowns, solved by block elimination.
 
-use super::dense::DenseLu;
-use crate::csr::Csr;
+use super::eliminated::PreparedBordered;
+use crate::csr::{Csr, for_each_row};
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
-use crate::solver::{Prepared, SolveError, SolveInfo, SolverParams};
-use crate::vector::{axpy, norm};
+use crate::solver::{SolveError, SolveInfo, SolverParams};
 
 /// `A w + B c = b` in `n` equations for `n` values `w` and `m` extra unknowns `c`, where `w = 0` at `m` pinned nodes.
 ///
@@ -23,6 +22,8 @@ pub struct Bordered {
     columns: Vec<Vec<(u32, f64)>>,
     pinned: Vec<u32>,
     rhs: Vec<f64>,
+    /// `s`, see [`Bordered::with_scales`]; empty where all are 1.
+    scales: Vec<f64>,
 }
 
 /// Solution of a [`Bordered`] system.
@@ -74,7 +75,36 @@ impl Bordered {
                 });
             }
         }
-        Ok(Self { matrix, columns, pinned, rhs })
+        Ok(Self { matrix, columns, pinned, rhs, scales: Vec::new() })
+    }
+
+    /// The same, with the scales `s` of the values: fields that are smooth and cheap are smooth in `s w`, not in `w`, and
+    /// multigrid has to know. [`Split::apply`](crate::Split::apply) gives its own.
+    ///
+    /// # Errors
+    /// [`MatrixError::Length`], and [`MatrixError::BadNumber`] for a scale that is not positive and finite.
+    pub fn with_scales(mut self, scales: Vec<f64>) -> Result<Self, MatrixError> {
+        MatrixError::check_length("scales", scales.len(), self.n())?;
+        if let Some(node) = scales.iter().position(|s| !(*s > 0.0 && s.is_finite())) {
+            return Err(MatrixError::BadNumber { what: "scale of the node", node, value: scales[node] });
+        }
+        self.scales = if scales.iter().all(|&s| s == 1.0) { Vec::new() } else { scales };
+        Ok(self)
+    }
+
+    /// `x` becomes `s x`.
+    pub(super) fn scale(&self, x: &mut [f64]) {
+        x.iter_mut().zip(&self.scales).for_each(|(x, s)| *x *= s);
+    }
+
+    /// `x` becomes `x / s`.
+    pub(super) fn unscale(&self, x: &mut [f64]) {
+        x.iter_mut().zip(&self.scales).for_each(|(x, s)| *x /= s);
+    }
+
+    /// `1 / s` of a node.
+    pub(super) fn inverse_scale(&self, i: usize) -> f64 {
+        self.scales.get(i).map_or(1.0, |s| 1.0 / s)
     }
 
     /// Number of values `w`.
@@ -99,6 +129,31 @@ impl Bordered {
     #[must_use]
     pub fn columns(&self) -> &[Vec<(u32, f64)>] {
         &self.columns
+    }
+
+    pub(super) fn pinned(&self) -> &[u32] {
+        &self.pinned
+    }
+
+    /// The extra unknown for which a node is pinned, by node.
+    pub(super) fn pin_of(&self) -> Vec<Option<u32>> {
+        let mut pin_of = vec![None; self.n()];
+        (0..).zip(&self.pinned).for_each(|(k, &p)| pin_of[p as usize] = Some(k));
+        pin_of
+    }
+
+    /// `D`: row `l` has the coefficients of the extra unknowns in the equation of pinned node `l`.
+    pub(super) fn corner(&self) -> Vec<Vec<f64>> {
+        let pin_of = self.pin_of();
+        let mut corner = vec![vec![0.0; self.extra()]; self.extra()];
+        for (k, column) in self.columns.iter().enumerate() {
+            for &(row, value) in column {
+                if let Some(l) = pin_of[row as usize] {
+                    corner[l as usize][k] += value;
+                }
+            }
+        }
+        corner
     }
 
     /// The matrix `A'`: the equations of the pinned nodes replaced by `w = 0`.
@@ -129,9 +184,7 @@ impl Bordered {
         self.without_pinned(self.rhs.clone())
     }
 
-    /// Solves the system: one factorisation or preconditioner of `A'`, one solution for each extra unknown and one for
-    /// the right-hand side, the Schur complement `D - C A'^-1 B'` by Gaussian elimination, and one step of
-    /// iterative refinement on the whole.
+    /// Solves the system, see [`PreparedBordered`].
     ///
     /// # Errors
     /// Those of [`solve`](crate::solve), and [`SolveError::Undetermined`] where the equations leave an extra unknown
@@ -139,7 +192,7 @@ impl Bordered {
     pub fn solve(&self, params: &SolverParams) -> Result<BorderedSolution, SolveError> {
         let prepared = PreparedBordered::new(self.clone(), params)?;
         let mut solution = prepared.solve(&self.rhs)?;
-        solution.info.iterations += prepared.products;
+        solution.info.iterations += prepared.products();
         Ok(solution)
     }
 
@@ -149,26 +202,30 @@ impl Bordered {
         self.residual_of(&self.rhs, values, extra)
     }
 
-    fn residual_of(&self, rhs: &[f64], values: &[f64], extra: &[f64]) -> Vec<f64> {
+    pub(super) fn residual_of(&self, rhs: &[f64], values: &[f64], extra: &[f64]) -> Vec<f64> {
         let mut r = vec![0.0; self.n()];
-        self.matrix.residual(values, rhs, &mut r);
+        self.residual_into(rhs, values, extra, &mut r);
+        r
+    }
+
+    pub(super) fn residual_into(&self, rhs: &[f64], values: &[f64], extra: &[f64], r: &mut [f64]) {
+        self.matrix.residual(values, rhs, r);
         for (column, c) in self.columns.iter().zip(extra) {
             for &(row, value) in column {
                 r[row as usize] -= value * c;
             }
         }
-        r
     }
 
     /// Largest residual relative to the sum of the sizes of the terms of its equation.
-    fn backward_error(&self, rhs: &[f64], values: &[f64], extra: &[f64]) -> f64 {
+    pub(super) fn backward_error(&self, rhs: &[f64], values: &[f64], extra: &[f64]) -> f64 {
         let r = self.residual_of(rhs, values, extra);
-        let mut size: Vec<f64> = rhs.iter().map(|b| b.abs()).collect();
-        for i in 0..self.n() {
+        let mut size = vec![0.0; self.n()];
+        for_each_row(&mut size, |i, size| {
             let (columns, row) = self.matrix.row(i);
             let terms = columns.iter().zip(row).map(|(&j, a)| (a * values[j as usize]).abs());
-            size[i] += terms.sum::<f64>() + (self.matrix.diagonal(i) * values[i]).abs();
-        }
+            *size = rhs[i].abs() + terms.sum::<f64>() + (self.matrix.diagonal(i) * values[i]).abs();
+        });
         for (column, c) in self.columns.iter().zip(extra) {
             for &(row, value) in column {
                 size[row as usize] += (value * c).abs();
@@ -179,7 +236,7 @@ impl Bordered {
     }
 
     /// `(A w)_p` for each pinned node.
-    fn border_rows(&self, w: &[f64]) -> Vec<f64> {
+    pub(super) fn border_rows(&self, w: &[f64]) -> Vec<f64> {
         let row = |&p: &u32| {
             let p = p as usize;
             let (columns, values) = self.matrix.row(p);
@@ -189,88 +246,8 @@ impl Bordered {
         self.pinned.iter().map(row).collect()
     }
 
-    fn without_pinned(&self, mut b: Vec<f64>) -> Vec<f64> {
+    pub(super) fn without_pinned(&self, mut b: Vec<f64>) -> Vec<f64> {
         self.pinned.iter().for_each(|&p| b[p as usize] = 0.0);
         b
-    }
-}
-
-/// A [`Bordered`] system with what is computed once for all right-hand sides.
-#[derive(Debug)]
-pub struct PreparedBordered {
-    system: Bordered,
-    prepared: Prepared,
-    /// `A'^-1 B'`, column by column.
-    responses: Vec<Vec<f64>>,
-    schur: DenseLu,
-    products: usize,
-}
-
-impl PreparedBordered {
-    /// Factors, or sets up the preconditioner, and solves for the response to every extra unknown.
-    ///
-    /// # Errors
-    /// See [`Bordered::solve`].
-    pub fn new(system: Bordered, params: &SolverParams) -> Result<Self, SolveError> {
-        let prepared = Prepared::new(&system.pinned_matrix(), params)?;
-        let m = system.extra();
-        let mut schur = vec![vec![0.0; m]; m];
-        let mut responses = Vec::with_capacity(m);
-        let mut products = 0;
-        for (k, column) in system.columns.iter().enumerate() {
-            let mut b = vec![0.0; system.n()];
-            column.iter().for_each(|&(row, value)| b[row as usize] += value);
-            for (l, &p) in system.pinned.iter().enumerate() {
-                schur[l][k] = b[p as usize];
-            }
-            let (x, info) = prepared.solve(&system.without_pinned(b))?;
-            products += info.iterations;
-            for (l, value) in system.border_rows(&x).into_iter().enumerate() {
-                schur[l][k] -= value;
-            }
-            responses.push(x);
-        }
-        Ok(Self { system, prepared, responses, schur: DenseLu::new(schur)?, products })
-    }
-
-    /// Solves for another right-hand side, with one step of iterative refinement.
-    ///
-    /// # Errors
-    /// See [`Bordered::solve`]; [`MatrixError::Length`] where `rhs` does not have one element for each equation.
-    pub fn solve(&self, rhs: &[f64]) -> Result<BorderedSolution, SolveError> {
-        let system = &self.system;
-        MatrixError::check_length("right-hand side", rhs.len(), system.n())?;
-        let (mut values, mut extra, mut info) = self.eliminate(rhs)?;
-        let mut products = info.iterations;
-        if system.extra() > 0 {
-            let residual = system.residual_of(rhs, &values, &extra);
-            // What is left may be rounding that an iterative method cannot reduce: then the solution stays as it is.
-            if let Ok((d_values, d_extra, d_info)) = self.eliminate(&residual) {
-                products += d_info.iterations;
-                let better_values: Vec<f64> = values.iter().zip(&d_values).map(|(a, b)| a + b).collect();
-                let better_extra: Vec<f64> = extra.iter().zip(&d_extra).map(|(a, b)| a + b).collect();
-                let better = system.backward_error(rhs, &better_values, &better_extra);
-                if better <= system.backward_error(rhs, &values, &extra) {
-                    (values, extra) = (better_values, better_extra);
-                }
-            }
-            let left = norm(&system.residual_of(rhs, &values, &extra));
-            info.residual = left / norm(rhs).max(f64::MIN_POSITIVE);
-            info.backward_error = system.backward_error(rhs, &values, &extra);
-        }
-        info.iterations = products;
-        Ok(BorderedSolution { values, extra, info })
-    }
-
-    fn eliminate(&self, b: &[f64]) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
-        let (mut w, info) = self.prepared.solve(&self.system.without_pinned(b.to_vec()))?;
-        let carried = self.system.border_rows(&w);
-        let g: Vec<f64> =
-            self.system.pinned.iter().zip(&carried).map(|(&p, row)| b[p as usize] - row).collect();
-        let extra = self.schur.solve(&g);
-        for (x, c) in self.responses.iter().zip(&extra) {
-            axpy(-c, x, &mut w);
-        }
-        Ok((w, extra, info))
     }
 }

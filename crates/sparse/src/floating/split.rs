@@ -141,6 +141,10 @@ impl Split {
         self.unknowns(i).scale
     }
 
+    fn scales(&self) -> Vec<f64> {
+        (0..self.group.len()).map(|i| self.scale(i)).collect()
+    }
+
     fn unknowns(&self, i: usize) -> &GroupUnknowns {
         &self.groups[self.group[i] as usize]
     }
@@ -154,7 +158,8 @@ impl Split {
     /// # Errors
     /// [`MatrixError::Length`], or an overflow of a scaled coefficient.
     pub fn apply(&self, matrix: &DifferenceMatrix, rhs: &[f64]) -> Result<Bordered, MatrixError> {
-        Bordered::new(self.scaled(matrix)?, self.columns(matrix), self.pinned.clone(), rhs.to_vec())
+        Bordered::new(self.scaled(matrix)?, self.columns(matrix), self.pinned.clone(), rhs.to_vec())?
+            .with_scales(self.scales())
     }
 
     /// The same for a pure Neumann problem: `lambda` times `column` is added to the equations, as the last extra
@@ -176,7 +181,7 @@ impl Split {
         columns.push(entries.map(|(i, &v)| (i as u32, v)).collect());
         let mut pins = self.pinned.clone();
         pins.push(pinned as u32);
-        Bordered::new(self.scaled(matrix)?, columns, pins, rhs.to_vec())
+        Bordered::new(self.scaled(matrix)?, columns, pins, rhs.to_vec())?.with_scales(self.scales())
     }
 
     /// The equations as they act on `w`, again in difference form: `a_ij s_j` and the row sum

@@ -1,7 +1,11 @@
 //! The coarsest level, solved directly.
 
+use super::SmootherKind;
+use super::smoother::Smoother;
+use super::strength;
 use crate::csr::Csr;
 use crate::solver::{Factors, Scaled, SolveError};
+use std::sync::Arc;
 
 /// A row sum below this part of the diagonal is none: what is left of a pure Neumann problem after all coarsening.
 const NO_ROW_SUM: f64 = 1e-13;
@@ -10,40 +14,57 @@ const NO_ROW_SUM: f64 = 1e-13;
 /// to matter to the first digits, which are all that a preconditioner needs.
 const SHIFT: f64 = 1e-7;
 
-/// Factors of the coarsest matrix.
+/// Sweeps that stand for a solution where every row is dominated by its diagonal: each shrinks the error tenfold.
+const SWEEPS: usize = 4;
+
+/// How the coarsest level is solved.
 #[derive(Debug)]
-pub(crate) struct Coarse {
-    scaled: Scaled,
-    factors: Factors,
+pub(crate) enum Coarse {
+    /// By the factors of its matrix.
+    Factored(Scaled, Factors),
+    /// By Gauss-Seidel: a level that is still large because nothing in it needs a coarser one, as in short time steps.
+    Relaxed(Arc<Csr>, Smoother),
 }
 
 impl Coarse {
     /// What stands here until there is a coarsest level.
     pub(crate) fn trivial() -> Result<Self, SolveError> {
         let (scaled, factors) = Factors::new(&Csr::identity(1))?;
-        Ok(Self { scaled, factors })
+        Ok(Self::Factored(scaled, factors))
     }
 
-    /// Factorises the matrix. A connected part that has only the constant as its null space gets a multiple of the matrix
-    /// of ones added, which makes it regular and changes nothing for right-hand sides that have a solution; any other
-    /// singular matrix is shifted.
-    pub(crate) fn new(a: &Csr, row_sums: &[f64]) -> Result<Self, SolveError> {
+    /// Factorises the matrix, unless it has more than `small` unknowns and relaxation solves it. A connected part that has only
+    /// the constant as its null space gets a multiple of the matrix of ones added, which makes it regular and changes
+    /// nothing for right-hand sides that have a solution; any other singular matrix is shifted.
+    pub(crate) fn new(a: &Arc<Csr>, row_sums: &[f64], small: usize) -> Result<Self, SolveError> {
+        if a.nrows() > small && strength::all_settled(a) {
+            return Ok(Self::Relaxed(Arc::clone(a), Smoother::new(SmootherKind::GaussSeidel, a)?));
+        }
         let floating = floating_parts(a, row_sums);
-        let a = if floating.is_empty() { a.clone() } else { with_ones(a, &floating)? };
+        let a = if floating.is_empty() { Csr::clone(a) } else { with_ones(a, &floating)? };
         match Factors::new(&a) {
-            Ok((scaled, factors)) => Ok(Self { scaled, factors }),
+            Ok((scaled, factors)) => Ok(Self::Factored(scaled, factors)),
             Err(SolveError::Singular { .. } | SolveError::EmptyRow { .. }) => {
                 let (scaled, factors) = Factors::new(&shifted(&a)?)?;
-                Ok(Self { scaled, factors })
+                Ok(Self::Factored(scaled, factors))
             }
             Err(error) => Err(error),
         }
     }
 
     pub(crate) fn solve(&self, b: &[f64], x: &mut [f64]) {
-        let mut scaled = self.scaled.rhs(b);
-        self.factors.apply(&mut scaled);
-        x.copy_from_slice(&self.scaled.unscale(scaled));
+        match self {
+            Self::Factored(scaled, factors) => {
+                let mut y = scaled.rhs(b);
+                factors.apply(&mut y);
+                x.copy_from_slice(&scaled.unscale(y));
+            }
+            Self::Relaxed(a, smoother) => {
+                let mut t = vec![0.0; smoother.scratch_len(b.len())];
+                smoother.first(a, b, x, &mut t);
+                (1..SWEEPS).for_each(|_| smoother.after(a, b, x, &mut t));
+            }
+        }
     }
 }
 

@@ -84,7 +84,7 @@ impl Multigrid {
             let Some((p, r)) = transfers(&a, weights, params)? else { break };
             (a, sums) = multigrid.add_level(a, &sums, p, r)?;
         }
-        multigrid.coarse = Coarse::new(&a, &sums)?;
+        multigrid.coarse = Coarse::new(&a, &sums, params.coarsest)?;
         Ok(multigrid)
     }
 
@@ -104,7 +104,7 @@ impl Multigrid {
         for level in old {
             (a, sums) = self.add_level(a, &sums, level.p, level.r)?;
         }
-        self.coarse = Coarse::new(&a, &sums)?;
+        self.coarse = Coarse::new(&a, &sums, self.params.coarsest)?;
         Ok(())
     }
 

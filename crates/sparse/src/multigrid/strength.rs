@@ -1,6 +1,6 @@
 //! Which unknowns depend strongly on which.
 
-use crate::csr::Csr;
+use crate::csr::{Csr, joined};
 use rayon::prelude::*;
 
 /// Rows that one task works through.
@@ -70,6 +70,18 @@ pub(crate) fn symmetric(a: &Csr, threshold: f64) -> Graph {
     filtered(a, &measure, &largest, settled, threshold)
 }
 
+/// Whether smoothing alone settles every row.
+pub(crate) fn all_settled(a: &Csr) -> bool {
+    (0..a.nrows()).into_par_iter().with_min_len(ROWS_PER_TASK).all(|i| {
+        let (columns, values) = a.row(i);
+        let (mut diagonal, mut others) = (0.0, 0.0);
+        for (&j, v) in columns.iter().zip(values) {
+            *(if j as usize == i { &mut diagonal } else { &mut others }) += v.abs();
+        }
+        diagonal >= DOMINANT * others
+    })
+}
+
 /// Calls `f(i, measures of row i, largest of i, settled of i)` for every row, in parallel.
 fn by_rows(
     a: &Csr,
@@ -101,28 +113,28 @@ fn by_rows(
 /// Keeps the entries that are strong for both ends, in rows that are not settled.
 fn filtered(a: &Csr, measure: &[f64], largest: &[f64], settled: Vec<bool>, threshold: f64) -> Graph {
     let n = a.nrows();
-    let mut graph = Graph {
-        offsets: Vec::with_capacity(n + 1),
-        neighbors: Vec::with_capacity(a.nnz()),
-        strengths: Vec::with_capacity(a.nnz()),
-        settled,
-    };
-    graph.offsets.push(0);
-    for i in 0..n {
-        if !graph.settled[i] {
-            let start = a.offsets()[i];
-            for (k, &j) in a.row(i).0.iter().enumerate() {
-                let s = measure[start + k];
-                let bound = threshold * largest[i].max(largest[j as usize]);
-                if s > 0.0 && s >= bound && !graph.settled[j as usize] {
-                    graph.neighbors.push(j);
-                    graph.strengths.push(s);
+    let kept = |task: usize| {
+        let mut part = (Vec::new(), Vec::new(), Vec::new());
+        for i in task * ROWS_PER_TASK..n.min((task + 1) * ROWS_PER_TASK) {
+            let before = part.1.len();
+            if !settled[i] {
+                let start = a.offsets()[i];
+                for (k, &j) in a.row(i).0.iter().enumerate() {
+                    let s = measure[start + k];
+                    let bound = threshold * largest[i].max(largest[j as usize]);
+                    if s > 0.0 && s >= bound && !settled[j as usize] {
+                        part.1.push(j);
+                        part.2.push(s);
+                    }
                 }
             }
+            part.0.push(part.1.len() - before);
         }
-        graph.offsets.push(graph.neighbors.len());
-    }
-    graph.neighbors.shrink_to_fit();
-    graph.strengths.shrink_to_fit();
-    graph
+        part
+    };
+    let parts: Vec<(Vec<usize>, Vec<u32>, Vec<f64>)> =
+        (0..n.div_ceil(ROWS_PER_TASK)).into_par_iter().map(kept).collect();
+    let parts = parts.iter().map(|p| (&p.0[..], &p.1[..], &p.2[..])).collect();
+    let (offsets, neighbors, strengths) = joined(n, n, parts).into_parts();
+    Graph { offsets, neighbors, strengths, settled }
 }

@@ -10,7 +10,7 @@ use crate::vector::axpy;
 use std::sync::{Arc, OnceLock};
 
 /// Products after which multigrid is given up: three times what it needs where it works.
-const PATIENCE: usize = 40;
+pub(crate) const PATIENCE: usize = 40;
 
 /// What steps in.
 const SUBSTITUTE: Method = Method::BiCgStab { l: 2 };
@@ -48,6 +48,11 @@ impl Chain {
         };
         self.substitute = OnceLock::new();
         multigrid.refresh(Arc::clone(matrix))
+    }
+
+    /// Multigrid, as long as nothing had to step in for it.
+    pub(crate) fn multigrid(&self) -> Option<&Multigrid> {
+        self.multigrid.as_ref().filter(|_| self.substitute.get().is_none())
     }
 
     pub(crate) fn hierarchy(&self) -> Option<&HierarchyInfo> {

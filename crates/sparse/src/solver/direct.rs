@@ -1,7 +1,7 @@
 //! Sparse factorisation. The only file that names faer.
 
 use super::scaling::Scaled;
-use super::{SolveError, SolveInfo};
+use super::{Criterion, SolveError, SolveInfo};
 use crate::csr::Csr;
 use crate::vector::{mixed_bit, norm, norm_max};
 use faer::linalg::solvers::SolveCore;
@@ -134,6 +134,7 @@ impl Factors {
             iterations: history.len() - 1,
             residual: if size == 0.0 { norm(&residual) } else { norm(&residual) / size },
             backward_error,
+            criterion: Criterion::RoundOff,
             history,
             replaced_pivots: 0,
             condition: Some(self.condition),

@@ -3,7 +3,7 @@
 use super::bicgstab::bicgstab_cycle;
 use super::cg::cg_cycle;
 use super::gmres::gmres_cycle;
-use super::{SolveError, SolveInfo, SolverParams};
+use super::{Criterion, SolveError, SolveInfo, SolverParams};
 use crate::csr::Csr;
 use crate::precond::Preconditioner;
 use crate::vector::{axpy, norm};
@@ -23,6 +23,14 @@ const AIM: f64 = 0.5;
 /// What a cycle aims at, relative to its start, where only the componentwise error is left to improve.
 const AIM_FURTHER: f64 = 1e-3;
 
+/// Componentwise backward error at which rounding alone keeps the residual from shrinking: what sums of a few tens of terms
+/// leave, with room. No other solution would fit the equations better.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// How far above the tolerance a residual may stay when rounding is all that is left of it. Beyond, a solution that is large for
+/// want of a better one, of a system that has none, would pass as well.
+const NEAR: f64 = 1e3;
+
 /// Something that maps vectors to vectors, `y = A x`.
 pub trait LinearOperator: Sync {
     /// Number of rows and columns.
@@ -37,6 +45,23 @@ impl LinearOperator for Csr {
     }
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         self.mul_vec(x, y);
+    }
+}
+
+/// A system that an iterative method solves: products, and the true residual, which may be formed more accurately.
+pub(crate) trait System: LinearOperator {
+    /// `r = b - A x`
+    fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]);
+    /// Componentwise backward error of `x`, see [`Csr::backward_error`].
+    fn backward_error(&self, x: &[f64], b: &[f64]) -> f64;
+}
+
+impl System for Csr {
+    fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
+        Self::residual(self, x, b, r);
+    }
+    fn backward_error(&self, x: &[f64], b: &[f64]) -> f64 {
+        Self::backward_error(self, x, b)
     }
 }
 
@@ -112,14 +137,14 @@ impl Cycle<'_> {
 /// Solves `A x = b` by cycles of `method`, each of which solves for a correction of the true residual.
 pub(crate) fn iterate(
     method: Method,
-    a: &Csr,
+    a: &dyn System,
     m: &dyn Preconditioner,
     b: &[f64],
     params: &SolverParams,
 ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
     let mut run = Run::new(method, m, b);
     if run.unit == 0.0 {
-        return Ok((vec![0.0; b.len()], run.info(0.0, 0.0, m)));
+        return Ok((vec![0.0; b.len()], run.info(0.0, 0.0, Criterion::Residual, m)));
     }
     let mut correction = vec![0.0; b.len()];
     let mut residual = b.to_vec();
@@ -149,11 +174,19 @@ pub(crate) fn iterate(
         a.residual(&run.x, b, &mut residual);
         let size = norm(&residual);
         run.keep_best(size);
-        let error = if size <= met { a.backward_error(&run.x, b) } else { f64::INFINITY };
+        let gained = size <= LEAST_GAIN * last_size;
+        // Above the tolerance it is asked for only where the residual stagnates.
+        let error = if size <= met || !gained { a.backward_error(&run.x, b) } else { f64::INFINITY };
         if size <= met && params.backward_error.is_none_or(|e| error <= e) {
-            let info = run.info(size / run.unit, error, m);
+            let info = run.info(size / run.unit, error, Criterion::Residual, m);
             return Ok((run.x, info));
         }
+        if !gained && size <= NEAR * met && error <= params.backward_error.unwrap_or(ROUND_OFF).min(ROUND_OFF)
+        {
+            let info = run.info(size / run.unit, error, Criterion::RoundOff, m);
+            return Ok((run.x, info));
+        }
+        let error = if size <= met { error } else { f64::INFINITY };
         let gain = (size / last_size).min(if error < last_error { error / last_error } else { 1.0 });
         run.judge(end, gain, params)?;
         if !size.is_finite() || (size > last_size && size > met) {
@@ -221,7 +254,13 @@ impl Run {
         Err(SolveError::NoConvergence { solver, reason, residual, tolerance, iterations, best })
     }
 
-    fn info(&self, residual: f64, backward_error: f64, m: &dyn Preconditioner) -> SolveInfo {
+    fn info(
+        &self,
+        residual: f64,
+        backward_error: f64,
+        criterion: Criterion,
+        m: &dyn Preconditioner,
+    ) -> SolveInfo {
         let mut history = self.history.clone();
         history.push(residual);
         SolveInfo {
@@ -229,6 +268,7 @@ impl Run {
             iterations: self.products,
             residual,
             backward_error,
+            criterion,
             history,
             replaced_pivots: m.replaced_pivots(),
             condition: None,

@@ -10,11 +10,14 @@ mod krylov;
 mod prepared;
 mod scaling;
 
+pub(crate) use chain::PATIENCE;
 pub(crate) use direct::Factors;
 pub use error::SolveError;
 pub use krylov::LinearOperator;
+pub(crate) use krylov::{Method, System, iterate};
+pub(crate) use prepared::Levels;
 pub use prepared::{Prepared, solve};
-pub(crate) use scaling::Scaled;
+pub(crate) use scaling::{Scaled, reciprocal_power};
 
 use crate::precond::PreconditionerKind;
 
@@ -85,6 +88,28 @@ impl Default for SolverParams {
     }
 }
 
+/// What ended a solve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Criterion {
+    /// The true residual met the tolerance.
+    Residual,
+    /// Rounding alone is left of the residual: the componentwise backward error is at a few tens of units in the last place, and
+    /// further steps do not improve it. Direct solves end so, by refinement; an iterative one does where the tolerance, which is
+    /// relative to the right-hand side, is beyond what numbers of 16 digits allow for this matrix.
+    RoundOff,
+}
+
+impl Criterion {
+    /// The name used in reports.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Residual => "residual",
+            Self::RoundOff => "round-off",
+        }
+    }
+}
+
 /// How a system was solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolveInfo {
@@ -96,6 +121,8 @@ pub struct SolveInfo {
     pub residual: f64,
     /// Componentwise backward error, which does not depend on how rows are scaled.
     pub backward_error: f64,
+    /// What ended it.
+    pub criterion: Criterion,
     /// Relative residual after each step, as the recurrence has it; the last is the true one.
     pub history: Vec<f64>,
     /// Pivots that the incomplete factorisation had to replace because they were almost zero.

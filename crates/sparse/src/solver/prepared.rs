@@ -7,7 +7,7 @@ use super::scaling::Scaled;
 use super::{AUTO_DIRECT_MAX, SolveError, SolveInfo, SolverKind, SolverParams};
 use crate::csr::Csr;
 use crate::error::MatrixError;
-use crate::multigrid::HierarchyInfo;
+use crate::multigrid::{HierarchyInfo, Multigrid};
 use crate::precond::{Preconditioner, PreconditionerKind};
 
 /// Solves `A x = b` once.
@@ -31,6 +31,14 @@ enum Engine {
     Direct(Factors),
     Krylov(Method, Box<dyn Preconditioner>),
     Multigrid(Box<Chain>),
+}
+
+/// Multigrid with the matrix that it was made for.
+pub(crate) struct Levels<'a> {
+    pub(crate) matrix: &'a Csr,
+    /// What the rows were multiplied by.
+    pub(crate) factors: &'a [f64],
+    pub(crate) multigrid: &'a Multigrid,
 }
 
 impl Prepared {
@@ -70,6 +78,18 @@ impl Prepared {
         Ok(Self { scaled, engine: Engine::Krylov(method, preconditioner), params: *params })
     }
 
+    /// GMRES with multigrid for a matrix whose rows are multiplied by factors that are given.
+    pub(crate) fn multigrid(
+        matrix: &Csr,
+        factors: Vec<f64>,
+        params: &SolverParams,
+    ) -> Result<Self, SolveError> {
+        check(params)?;
+        let scaled = Scaled::by_factors(matrix, factors)?;
+        let chain = Chain::new(&scaled, params)?;
+        Ok(Self { scaled, engine: Engine::Multigrid(Box::new(chain)), params: *params })
+    }
+
     /// Number of unknowns.
     #[must_use]
     pub fn n(&self) -> usize {
@@ -87,7 +107,7 @@ impl Prepared {
         let matrix = &self.scaled.matrix;
         let solved = match &self.engine {
             Engine::Direct(factors) => factors.solve_refined(matrix, &b),
-            Engine::Krylov(method, m) => iterate(*method, matrix, m.as_ref(), &b, &self.params),
+            Engine::Krylov(method, m) => iterate(*method, &**matrix, m.as_ref(), &b, &self.params),
             Engine::Multigrid(chain) => chain.solve(matrix, &b, &self.params),
         };
         match solved {
@@ -142,6 +162,13 @@ impl Prepared {
             Engine::Krylov(_, m) => m.hierarchy(),
             Engine::Multigrid(chain) => chain.hierarchy(),
         }
+    }
+
+    /// The levels to precondition with, where GMRES with multigrid is in charge and has not failed.
+    pub(crate) fn levels(&self) -> Option<Levels<'_>> {
+        let Engine::Multigrid(chain) = &self.engine else { return None };
+        let multigrid = chain.multigrid()?;
+        Some(Levels { matrix: &self.scaled.matrix, factors: self.scaled.factors(), multigrid })
     }
 
     fn unscale_best(&self, mut error: SolveError) -> SolveError {

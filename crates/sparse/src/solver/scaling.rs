@@ -1,7 +1,7 @@
 //! Scaling of rows by powers of two, which rounds nothing.
 
 use super::SolveError;
-use crate::csr::Csr;
+use crate::csr::{Csr, for_each_row};
 use std::sync::Arc;
 
 /// A matrix scaled so that the sizes of coefficients do not decide about pivots and norms.
@@ -15,35 +15,42 @@ pub(crate) struct Scaled {
 }
 
 /// The power of two next below the reciprocal of `x > 0`, kept within the normal numbers.
-fn reciprocal_power(x: f64) -> f64 {
+pub(crate) fn reciprocal_power(x: f64) -> f64 {
     (-x.log2().floor()).clamp(-1000.0, 1000.0).exp2()
+}
+
+/// The largest absolute value of every row; none may be zero.
+fn largest_entries(matrix: &Csr) -> Result<Vec<f64>, SolveError> {
+    let mut largest = vec![0.0; matrix.nrows()];
+    for_each_row(&mut largest, |i, largest| {
+        *largest = matrix.row(i).1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    });
+    match largest.iter().position(|&l| l == 0.0) {
+        Some(row) => Err(SolveError::EmptyRow { row }),
+        None => Ok(largest),
+    }
 }
 
 impl Scaled {
     /// Rows with a largest entry between 1 and 2.
     pub(crate) fn rows(matrix: &Csr) -> Result<Self, SolveError> {
         matrix.require_square()?;
-        let mut rows = Vec::with_capacity(matrix.nrows());
-        for row in 0..matrix.nrows() {
-            let largest = matrix.row(row).1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-            if largest == 0.0 {
-                return Err(SolveError::EmptyRow { row });
-            }
-            rows.push(reciprocal_power(largest));
-        }
+        let mut rows = largest_entries(matrix)?;
+        for_each_row(&mut rows, |_, largest| *largest = reciprocal_power(*largest));
         Ok(Self { matrix: Arc::new(matrix.row_scaled(&rows)?), rows, columns: None })
+    }
+
+    /// Rows multiplied by factors that are given.
+    pub(crate) fn by_factors(matrix: &Csr, rows: Vec<f64>) -> Result<Self, SolveError> {
+        matrix.require_square()?;
+        let matrix = Arc::new(matrix.row_scaled(&rows)?);
+        largest_entries(&matrix)?;
+        Ok(Self { matrix, rows, columns: None })
     }
 
     /// Another matrix with its rows scaled by the same factors, so that sums over rows keep their meaning.
     pub(crate) fn renewed(&self, matrix: &Csr) -> Result<Self, SolveError> {
-        let scaled = matrix.row_scaled(&self.rows)?;
-        for row in 0..scaled.nrows() {
-            let largest = scaled.row(row).1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-            if largest == 0.0 {
-                return Err(SolveError::EmptyRow { row });
-            }
-        }
-        Ok(Self { matrix: Arc::new(scaled), rows: self.rows.clone(), columns: None })
+        Self::by_factors(matrix, self.rows.clone())
     }
 
     /// Rows and columns with the same factors and a diagonal between 1 and 4, which keeps a symmetric matrix so.
@@ -71,6 +78,11 @@ impl Scaled {
             None => Some(self.rows.iter().map(|f| 1.0 / f).collect()),
             Some(_) => None,
         }
+    }
+
+    /// What the rows were multiplied by.
+    pub(crate) fn factors(&self) -> &[f64] {
+        &self.rows
     }
 
     pub(crate) fn rhs(&self, rhs: &[f64]) -> Vec<f64> {
