@@ -1,6 +1,6 @@
 //! A system that is factored once and solved for many right-hand sides.
 
-use meshless_sparse::{DifferenceMatrix, Prepared, PreparedBordered, SolveInfo, Split};
+use meshless_sparse::{DifferenceMatrix, Prepared, PreparedBordered, Reduced, SolveInfo, Split};
 
 use super::{SystemParams, floating};
 use crate::{MethodError, Problem};
@@ -25,6 +25,12 @@ enum Solver {
     Split(Box<PreparedBordered>, Split),
 }
 
+/// The rows of the unknowns, prescribed values eliminated.
+fn reduce(rows: &DifferenceMatrix, known: &[bool]) -> Result<Reduced, MethodError> {
+    let zeros: Vec<Option<f64>> = known.iter().map(|&k| k.then_some(0.0)).collect();
+    Ok(rows.eliminate(&zeros, &vec![0.0; rows.n()])?)
+}
+
 impl PreparedSystem {
     /// Prepares rows in which values are prescribed at the nodes that are `known`.
     ///
@@ -36,12 +42,35 @@ impl PreparedSystem {
         known: &[bool],
         params: &SystemParams,
     ) -> Result<Self, MethodError> {
-        let zeros: Vec<Option<f64>> = known.iter().map(|&k| k.then_some(0.0)).collect();
-        let reduced = rows.eliminate(&zeros, &vec![0.0; rows.n()])?;
+        let reduced = reduce(&rows, known)?;
         let split = match params.split_floating {
             true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
             false => None,
         };
+        Self::of(rows, reduced, split, params)
+    }
+
+    /// Prepares other rows of the same pattern, as those of another time step: what floats and what is prescribed stay, and
+    /// the graph of regions is not looked at again. The rest does not depend on what was prepared before.
+    ///
+    /// # Errors
+    /// Those of the solver, and a matrix of another size.
+    pub fn renewed(self, rows: DifferenceMatrix, params: &SystemParams) -> Result<Self, MethodError> {
+        let known: Vec<bool> = self.unknown_of.iter().map(|&k| k == KNOWN).collect();
+        let reduced = reduce(&rows, &known)?;
+        let split = match self.solver {
+            Solver::Plain(_) => None,
+            Solver::Split(_, split) => Some(split),
+        };
+        Self::of(rows, reduced, split, params)
+    }
+
+    fn of(
+        rows: DifferenceMatrix,
+        reduced: Reduced,
+        split: Option<Split>,
+        params: &SystemParams,
+    ) -> Result<Self, MethodError> {
         let solver = match split {
             Some(split) => {
                 let bordered = split.apply(&reduced.matrix, &reduced.rhs)?;

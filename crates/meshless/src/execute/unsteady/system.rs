@@ -117,12 +117,16 @@ impl<'a, const D: usize> Heat<'a, D> {
         if self.prepared.as_ref().is_none_or(|m| m.c != c) {
             let split_floating = self.plan.runs(Stage::FloatingConstants);
             let params = SystemParams { solver: self.plan.solver, split_floating };
-            let known: Vec<bool> =
-                self.discretization.kinds.iter().map(|&k| k == RowKind::Dirichlet).collect();
             let rows = self.shifted(c)?;
-            let problem = self.discrete.problem();
-            let system = PreparedSystem::new(&problem, rows, &known, &params)
-                .map_err(|e| self.discrete.explain(self.scene, e))?;
+            let system = match self.prepared.take() {
+                Some(old) => old.system.renewed(rows, &params),
+                None => {
+                    let kinds = &self.discretization.kinds;
+                    let known: Vec<bool> = kinds.iter().map(|&k| k == RowKind::Dirichlet).collect();
+                    PreparedSystem::new(&self.discrete.problem(), rows, &known, &params)
+                }
+            };
+            let system = system.map_err(|e| self.discrete.explain(self.scene, e))?;
             self.prepared = Some(Matrix { c, system });
             self.matrices += 1;
         }
