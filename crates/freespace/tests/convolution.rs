@@ -267,3 +267,33 @@ fn mistakes_are_errors_that_say_what_was_wrong() {
     assert!(matches!(Plan::<3>::new(&large, limited), Err(FreeSpaceError::Memory { available: 10, .. })));
     assert!((mesh.edge_ratio(&source) - 0.0).abs() < 1e-15 && mesh.edge_ratio(&vec![2.0; 64]) == 1.0);
 }
+
+/// Outputs that are asked for together share transforms; asked for alone, each has its own.
+#[test]
+fn outputs_together_are_those_alone() {
+    fn check<const D: usize>(cells: [usize; D]) {
+        let mesh = mesh(cells, [0.1; D], Centring::Node);
+        let source = noise(mesh.len(), 8);
+        let plan: Plan<D> = Plan::new(&mesh, Kernel::gaussian(6)).expect("a plan");
+        let mut wanted = vec![Output::PotentialError { source: 0 }, Output::Potential { source: 0 }];
+        for axis in 0..D {
+            wanted.push(Output::Gradient { source: 0, axis });
+            wanted.push(Output::GradientError { source: 0, axis });
+        }
+        let mut shift = [0.0; D];
+        for moved in [0.0, 0.37] {
+            shift[D - 1] = moved;
+            let (mut workspace, mut together, mut alone) = (Workspace::default(), Vec::new(), Vec::new());
+            plan.solve_shifted(&[&source], &wanted, shift, &mut workspace, &mut together).expect("fields");
+            for (output, field) in wanted.iter().zip(&together) {
+                plan.solve_shifted(&[&source], &[*output], shift, &mut workspace, &mut alone)
+                    .expect("a field");
+                assert!(difference(field, &alone[0]) < ROUND_OFF, "{output:?}");
+            }
+        }
+    }
+    check([23]);
+    check([40, 9]);
+    check([7, 1, 12]);
+    check([5, 6, 9]);
+}

@@ -37,8 +37,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
 
     /// Bytes that the plan keeps and that a solve with so many sources and outputs uses beside the fields themselves.
     pub fn bytes(&self, sources: usize, outputs: usize) -> usize {
-        let [x, y, z] = &self.engine.axes;
-        let spectra = sources.max(outputs) * 2 * x.half() * y.n * z.n;
+        let spectra = sources.max(outputs) * 2 * self.engine.spectrum();
         size_of::<T>() * (self.engine.kernel.len() + spectra)
     }
 }

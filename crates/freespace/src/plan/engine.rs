@@ -10,12 +10,10 @@ use rustfft::num_complex::Complex;
 
 use super::axis::{Axis, RealTransforms};
 use super::estimate::Estimate;
-use super::output::Wanted;
 use super::real::Real;
-use super::tile::{Shape, Tile};
-
-/// Lines that are transformed before they are stored across.
-const LINES: usize = 8;
+use super::recipe::{Last, Recipe};
+use super::tile::Tile;
+use super::transpose::{Aligned, GROUP, gather, pitch, scatter};
 
 /// Planes that are worked on together where a plane is a single line.
 const PLANES_OF_LINES: usize = 32;
@@ -34,111 +32,121 @@ pub(super) struct Engine<T: Real> {
 /// The half-spectra of the first direction, reused from solve to solve.
 #[derive(Debug, Default)]
 pub(super) struct Spectra<T> {
-    arrays: Vec<Vec<Complex<T>>>,
+    arrays: Vec<Aligned<Complex<T>>>,
 }
 
 impl<T: Real> Engine<T> {
-    /// Convolves the sources; one output for each that is wanted.
+    /// Numbers of the half-spectra of one array.
+    pub(super) fn spectrum(&self) -> usize {
+        self.axes[0].half() * pitch(self.axes[1].n) * self.axes[2].n
+    }
+
+    /// Convolves the sources; the outputs are those of the recipe.
     pub(super) fn run(
         &self,
         sources: &[&[T]],
-        wanted: &[Wanted<T>],
+        recipe: &Recipe<T>,
         spectra: &mut Spectra<T>,
         outputs: &mut [Vec<T>],
     ) {
         let [nx, ny, nz] = [self.axes[0].n, self.axes[1].n, self.axes[2].n];
-        let slab = self.axes[0].half() * ny;
+        let row = pitch(ny);
+        let slab = self.axes[0].half() * row;
         let arrays = &mut spectra.arrays;
-        arrays.resize_with(sources.len().max(wanted.len()), Vec::new);
-        arrays.iter_mut().for_each(|a| a.resize(slab * nz, Complex::default()));
+        arrays.resize_with(sources.len().max(recipe.middle), Aligned::default);
+        for array in arrays.iter_mut().filter(|a| a.len() != slab * nz) {
+            *array = Aligned::zeros(slab * nz);
+        }
         for (source, array) in sources.iter().zip(arrays.iter_mut()) {
             self.forward_first(source, array);
         }
-        let block = if ny == 1 { PLANES_OF_LINES } else { 1 };
+        let block = if self.axes[1].len == 1 { PLANES_OF_LINES } else { 1 };
         let mut planes: Vec<Vec<&mut [Complex<T>]>> =
             (0..self.axes[0].half().div_ceil(block)).map(|_| Vec::with_capacity(arrays.len() * nz)).collect();
         for array in arrays.iter_mut() {
             for slab in array.chunks_exact_mut(slab) {
-                for (plane, part) in planes.iter_mut().zip(slab.chunks_mut(block * ny)) {
+                for (plane, part) in planes.iter_mut().zip(slab.chunks_mut(block * row)) {
                     plane.push(part);
                 }
             }
         }
-        let shape = Shape { block, sources: sources.len(), outputs: wanted.len() };
         planes.par_iter_mut().enumerate().for_each_init(
-            || Tile::new(self, shape),
-            |tile, (index, parts)| tile.convolve(self, index * block, parts, wanted),
+            || Tile::new(self, sources.len(), recipe),
+            |tile, (index, parts)| tile.convolve(self, index * block, parts, recipe),
         );
-        for (array, output) in arrays.iter().zip(outputs.iter_mut()) {
+        for (last, output) in recipe.last.iter().zip(outputs.iter_mut()) {
             output.resize(nx * ny * nz, T::default());
-            self.inverse_first(array, output);
+            self.inverse_first(&arrays[last.middle], last, output);
         }
     }
 
     /// From real lines to spectra, stored with the second direction fastest, then the first, then the third.
     fn forward_first(&self, source: &[T], spectra: &mut [Complex<T>]) {
         let (x, y) = (&self.axes[0], &self.axes[1]);
-        let half = x.half();
+        let (half, stride, row) = (x.half(), pitch(x.half()), pitch(y.n));
         let plan = &self.real.forward;
-        spectra.par_chunks_mut(half * y.n).zip(source.par_chunks(x.n * y.n)).for_each_init(
-            || (plan.make_input_vec(), vec![Complex::default(); LINES * half], plan.make_scratch_vec()),
+        spectra.par_chunks_mut(half * row).zip(source.par_chunks(x.n * y.n)).for_each_init(
+            || (plan.make_input_vec(), Aligned::zeros(GROUP * stride), plan.make_scratch_vec()),
             |(padded, lines, scratch), (slab, values)| {
-                if y.n == 1 {
+                let mut there = |values: &[T], line: &mut [Complex<T>]| {
                     x.load(values, padded);
-                    let outcome = plan.process_with_scratch(padded, slab, scratch);
+                    let outcome = plan.process_with_scratch(padded, line, scratch);
                     debug_assert!(outcome.is_ok(), "the buffers were made for this length");
-                    return;
+                };
+                if y.n == 1 {
+                    return there(values, slab);
                 }
-                for (group, rows) in values.chunks(LINES * x.n).enumerate() {
-                    let count = rows.len() / x.n;
-                    for (row, line) in rows.chunks_exact(x.n).zip(lines.chunks_exact_mut(half)) {
-                        x.load(row, padded);
-                        let outcome = plan.process_with_scratch(padded, line, scratch);
-                        debug_assert!(outcome.is_ok(), "the buffers were made for this length");
+                for (group, values) in values.chunks(GROUP * x.n).enumerate() {
+                    for (values, line) in values.chunks_exact(x.n).zip(lines.chunks_exact_mut(stride)) {
+                        there(values, &mut line[..half]);
                     }
-                    for (k, across) in slab.chunks_exact_mut(y.n).enumerate() {
-                        let stored = &mut across[group * LINES..group * LINES + count];
-                        for (j, value) in stored.iter_mut().enumerate() {
-                            *value = lines[j * half + k];
-                        }
+                    scatter(lines, stride, slab.chunks_exact_mut(row), group * GROUP);
+                }
+            },
+        );
+    }
+
+    /// Back to real lines, those of a derivative or not.
+    fn inverse_first(&self, spectra: &[Complex<T>], last: &Last, output: &mut [T]) {
+        let (x, y) = (&self.axes[0], &self.axes[1]);
+        let (half, stride, row) = (x.half(), pitch(x.half()), pitch(y.n));
+        let plan = &self.real.inverse;
+        let factors = self.factors(last);
+        output.par_chunks_mut(x.n * y.n).zip(spectra.par_chunks(half * row)).for_each_init(
+            || (plan.make_output_vec(), Aligned::zeros(GROUP * stride), plan.make_scratch_vec()),
+            |(padded, lines, scratch), (values, slab)| {
+                let mut back = |line: &mut [Complex<T>], values: &mut [T]| {
+                    if let Some(factors) = &factors {
+                        line.iter_mut().zip(factors).for_each(|(value, factor)| *value = *value * factor);
+                    }
+                    inverse(x, plan.as_ref(), line, padded, scratch, values);
+                };
+                if y.n == 1 {
+                    lines[..half].copy_from_slice(slab);
+                    return back(&mut lines[..half], values);
+                }
+                for (group, values) in values.chunks_mut(GROUP * x.n).enumerate() {
+                    gather(slab.chunks_exact(row), group * GROUP, lines, stride);
+                    for (values, line) in values.chunks_exact_mut(x.n).zip(lines.chunks_exact_mut(stride)) {
+                        back(&mut line[..half], values);
                     }
                 }
             },
         );
     }
 
-    /// Back to real lines.
-    fn inverse_first(&self, spectra: &[Complex<T>], output: &mut [T]) {
-        let (x, y) = (&self.axes[0], &self.axes[1]);
-        let half = x.half();
-        let plan = &self.real.inverse;
-        output.par_chunks_mut(x.n * y.n).zip(spectra.par_chunks(half * y.n)).for_each_init(
-            || (plan.make_output_vec(), vec![Complex::default(); LINES * half], plan.make_scratch_vec()),
-            |(padded, lines, scratch), (values, slab)| {
-                if y.n == 1 {
-                    lines[..half].copy_from_slice(slab);
-                    back(x, plan.as_ref(), &mut lines[..half], padded, scratch, values);
-                    return;
-                }
-                for (group, rows) in values.chunks_mut(LINES * x.n).enumerate() {
-                    let count = rows.len() / x.n;
-                    for (k, across) in slab.chunks_exact(y.n).enumerate() {
-                        let stored = &across[group * LINES..group * LINES + count];
-                        for (j, value) in stored.iter().enumerate() {
-                            lines[j * half + k] = *value;
-                        }
-                    }
-                    for (row, line) in rows.chunks_exact_mut(x.n).zip(lines.chunks_exact_mut(half)) {
-                        back(x, plan.as_ref(), line, padded, scratch, row);
-                    }
-                }
-            },
-        );
+    /// What a line of an output is multiplied by; nothing if by one.
+    fn factors(&self, last: &Last) -> Option<Vec<Complex<T>>> {
+        let (x, sign) = (&self.axes[0], T::rounded(last.sign));
+        if last.along {
+            return Some(x.wave.iter().take(x.half()).map(|k| Complex::new(T::zero(), *k * sign)).collect());
+        }
+        (last.sign != 1.0).then(|| vec![Complex::new(sign, T::zero()); x.half()])
     }
 }
 
 /// A line of a spectrum back to real values.
-fn back<T: Real>(
+fn inverse<T: Real>(
     x: &Axis<T>,
     plan: &dyn ComplexToReal<T>,
     line: &mut [Complex<T>],

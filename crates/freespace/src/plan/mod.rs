@@ -11,7 +11,9 @@ mod memory;
 mod octant;
 mod output;
 mod real;
+mod recipe;
 mod tile;
+mod transpose;
 
 use crate::error::FreeSpaceError;
 use crate::kernel::{Kernel, Radial};
@@ -23,6 +25,7 @@ pub use boundary::{Boundary, Face};
 pub use output::Output;
 use output::Wanted;
 pub use real::Real;
+use recipe::Recipe;
 
 /// How a plan is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,17 +192,20 @@ impl<const D: usize, T: Real> Plan<D, T> {
             check_values("source", source, self.mesh.len())?;
             self.check_mean(source)?;
         }
-        let wanted: Vec<Wanted<T>> = wanted
-            .iter()
-            .map(|&output| self.wanted(output, sources.len(), shift))
-            .collect::<Result<_, _>>()?;
+        let wanted: Vec<Wanted> =
+            wanted.iter().map(|&output| self.wanted(output, sources.len())).collect::<Result<_, _>>()?;
+        let phases = shift.iter().any(|s| *s != 0.0).then(|| {
+            let mut along = [0.0; 3];
+            (0..D).for_each(|a| along[slot::<D>(a)] = shift[a]);
+            std::array::from_fn(|a| self.engine.axes[a].phases(along[a]))
+        });
         outputs.resize_with(wanted.len(), Vec::new);
-        self.engine.run(sources, &wanted, &mut workspace.spectra, outputs);
+        self.engine.run(sources, &Recipe::new(wanted, phases), &mut workspace.spectra, outputs);
         Ok(())
     }
 
     /// An output in terms of the engine.
-    fn wanted(&self, output: Output, sources: usize, shift: [f64; D]) -> Result<Wanted<T>, FreeSpaceError> {
+    fn wanted(&self, output: Output, sources: usize) -> Result<Wanted, FreeSpaceError> {
         let mut terms = output.terms::<D>(sources)?;
         terms.iter_mut().for_each(|t| t.axis = t.axis.map(slot::<D>));
         if output.is_estimate() && self.engine.estimate.is_none() {
@@ -207,12 +213,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
                 what: "only plans of Gaussian kernels have an estimate of the error".to_owned(),
             });
         }
-        let phases = shift.iter().any(|s| *s != 0.0).then(|| {
-            let mut along = [0.0; 3];
-            (0..D).for_each(|a| along[slot::<D>(a)] = shift[a]);
-            std::array::from_fn(|a| self.engine.axes[a].phases(along[a]))
-        });
-        Ok(Wanted { terms, estimate: output.is_estimate(), phases })
+        Ok(Wanted { terms, estimate: output.is_estimate() })
     }
 
     fn check_mean(&self, source: &[T]) -> Result<(), FreeSpaceError> {
@@ -230,6 +231,9 @@ impl<const D: usize, T: Real> Plan<D, T> {
     }
 }
 
+/// Values that are checked together.
+const CHECKED: usize = 1024;
+
 pub(crate) fn check_values<T: Real>(
     what: &'static str,
     values: &[T],
@@ -238,8 +242,15 @@ pub(crate) fn check_values<T: Real>(
     if values.len() != expected {
         return Err(FreeSpaceError::Length { what, got: values.len(), expected });
     }
-    match values.iter().position(|v| !v.widened().is_finite()) {
-        Some(index) => Err(FreeSpaceError::NotFinite { what, value: values[index].widened(), index }),
+    // Counting is done several numbers at a time, looking for the first is not.
+    let wrong = |v: &T| !v.widened().is_finite();
+    let block = values.chunks(CHECKED).position(|c| c.iter().map(|v| u64::from(wrong(v))).sum::<u64>() > 0);
+    let start = block.map_or(values.len(), |b| b * CHECKED);
+    match values[start..].iter().position(wrong) {
+        Some(index) => {
+            let index = start + index;
+            Err(FreeSpaceError::NotFinite { what, value: values[index].widened(), index })
+        }
         None => Ok(()),
     }
 }

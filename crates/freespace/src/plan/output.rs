@@ -1,7 +1,5 @@
 //! What a solve is asked for.
 
-use rustfft::num_complex::Complex;
-
 use crate::error::FreeSpaceError;
 
 /// A field that a plan computes; `source` counts the sources that were given, `axis` the directions, 0 for x.
@@ -54,21 +52,12 @@ pub(super) struct Term {
     pub(super) sign: f64,
 }
 
-/// An output as the engine computes it.
+/// An output as the sum of terms times the kernel.
 #[derive(Debug)]
-pub(super) struct Wanted<T> {
+pub(super) struct Wanted {
     pub(super) terms: Vec<Term>,
     /// The estimate of the error instead of the kernel.
     pub(super) estimate: bool,
-    /// Factors of each direction that move the result.
-    pub(super) phases: Option<[Vec<Complex<T>>; 3]>,
-}
-
-impl<T> Wanted<T> {
-    /// Whether it is a source convolved with the kernel and no more.
-    pub(super) fn is_plain(&self) -> bool {
-        matches!(self.terms[..], [Term { axis: None, .. }]) && !self.estimate && self.phases.is_none()
-    }
 }
 
 impl Output {

@@ -8,6 +8,7 @@
 mod indicator;
 mod interpolate;
 mod patch;
+mod taper;
 
 pub use indicator::suggest;
 pub use interpolate::{Superposition, m4_prime, m6_star};
@@ -18,6 +19,7 @@ use crate::kernel::{BandPass, Gaussian};
 use crate::mesh::Mesh;
 use crate::plan::{Output, Plan, Workspace};
 use interpolate::interpolate;
+use taper::{TAPER, taper};
 
 /// Smoothing radius over the spacing: as in the paper. What a mesh finds must be smooth on its own scale to be
 /// interpolated, more than its sum must be as good as an integral.
@@ -176,9 +178,17 @@ impl<const D: usize> RefinedPlan<D> {
         wanted: &[Output],
         shift: [f64; D],
     ) -> Result<Vec<Vec<f64>>, FreeSpaceError> {
+        let plan = &self.levels[index].plan;
+        // The source goes on beyond the band of a patch, but not beyond the base mesh.
+        let tapered: Vec<Vec<f64>>;
+        let sources = if self.levels[index].band == 0 {
+            sources
+        } else {
+            tapered = sources.iter().map(|source| taper(plan.mesh(), source)).collect::<Result<_, _>>()?;
+            &tapered
+        };
         let sources: Vec<&[f64]> = sources.iter().map(Vec::as_slice).collect();
         let mut outputs = Vec::new();
-        let plan = &self.levels[index].plan;
         plan.solve_shifted(&sources, wanted, shift, &mut Workspace::default(), &mut outputs)?;
         Ok(outputs)
     }
@@ -242,7 +252,7 @@ impl<const D: usize> Level<D> {
         let coarsest = mesh.spacing().into_iter().fold(0.0, f64::max);
         let kernel = BandPass::<D>::new(params.order, smoothing * coarsest, patch.ratio as f64)?;
         let finest = mesh.spacing().into_iter().fold(f64::INFINITY, f64::min);
-        let band = (kernel.reach(params.tolerance) / finest).ceil() as usize;
+        let band = (kernel.reach(params.tolerance) / finest).ceil() as usize + TAPER;
         let sampled = evaluated.grown(band)?;
         let plan = Plan::with_compact(&sampled, &kernel)?;
         Ok(Self { plan, parent: None, mesh, evaluated, margin, band })

@@ -35,7 +35,10 @@ const fn paper(order: usize) -> Kernel {
 const PATCH_ORDERS: [usize; 5] = [2, 4, 6, 8, 10];
 
 /// The order for a source with two scales.
-const SCALES_ORDER: usize = 10;
+const SCALES_ORDER: usize = 6;
+
+/// Cells of the finest mesh at which the base mesh of three levels is too coarse.
+const SCALES_LIMIT: usize = 1024;
 
 /// Orders that are looked at.
 const ORDERS: [usize; 6] = [2, 4, 6, 8, 10, 20];
@@ -66,7 +69,11 @@ fn bases(effort: Effort) -> &'static [usize] {
 
 /// Cells of the one mesh that the source with two scales is solved on.
 fn uniform_sizes(effort: Effort) -> &'static [usize] {
-    if effort == Effort::Quick { &[128, 256, 512, 1024] } else { &[128, 256, 512, 1024, 2048] }
+    match effort {
+        Effort::Quick => &[128, 256, 512, 1024],
+        Effort::Default => &[128, 256, 512, 1024, 2048],
+        Effort::Full => &[128, 256, 512, 1024, 2048, 4096],
+    }
 }
 
 fn refined(options: &Options) -> Vec<Result<Run, String>> {
@@ -83,8 +90,8 @@ fn refined(options: &Options) -> Vec<Result<Run, String>> {
         let sizes = uniform_sizes(options.effort);
         progress(&format!("{SUITE} {}", patches::SCALES));
         runs.extend(sizes.iter().map(|&n| patches::uniform(SCALES_ORDER, n)));
-        for &n in sizes.iter().filter(|n| **n >= 512) {
-            runs.extend(patches::LEVELS.map(|how| patches::refined(SCALES_ORDER, n / 8, how)));
+        for &n in sizes.iter().filter(|n| **n >= 1024) {
+            runs.extend(patches::LEVELS.map(|how| patches::refined(SCALES_ORDER, n, how)));
         }
     }
     runs

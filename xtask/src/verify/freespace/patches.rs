@@ -174,19 +174,29 @@ impl Solved {
     }
 }
 
-/// A wide bump and a narrow one ten times as strong in velocity.
-const TWO_SCALES: [(f64, [f64; 2], f64); 2] = [(1.0, [0.0, 0.0], 0.9), (1.0, [0.3, 0.2], 0.08)];
+/// A wide bump and one that is fourteen times as narrow and as strong in velocity.
+const TWO_SCALES: [(f64, [f64; 2], f64); 2] = [(1.0, [0.0, 0.0], 0.9), (1.0, [0.3, 0.2], 0.0625)];
 
-/// Levels of patches round the narrow bump, each within the one before: halves of their sides. Outside of a patch the parent's
-/// error stays, which reaches as far as its kernel: some twenty of its cells from the bump.
-const HALF_SIDES: [f64; 3] = [0.375, 0.25, 0.1875];
+/// Cells of its parent by which a patch is larger than the narrow bump on each side: outside of it the parent's error stays,
+/// which reaches as far as the parent's kernel.
+const BEYOND: f64 = 20.0;
 
-/// Ways of superposition that the levels are tried with.
-pub(super) const LEVELS: [(&str, Superposition); 3] = [
-    ("three levels, shift", Superposition::Shift),
-    ("three levels, ten points", Superposition::Lagrange(10)),
-    ("three levels, M6*", Superposition::M6Star),
+/// Ways of refining: by what the cells of the finest patch are smaller than those of the base mesh, in powers of two, and how
+/// they are brought together.
+pub(super) const LEVELS: [(&str, u32, Superposition); 3] = [
+    (PAYING, 2, Superposition::Lagrange(10)),
+    ("two levels, M6*", 2, Superposition::M6Star),
+    (COARSE, 3, Superposition::Lagrange(10)),
 ];
+
+/// One mesh.
+pub(super) const UNIFORM: &str = "uniform";
+
+/// The base mesh resolves the narrow bump.
+pub(super) const PAYING: &str = "two levels, ten points";
+
+/// The base mesh does not.
+pub(super) const COARSE: &str = "three levels, ten points";
 
 fn two_scales() -> Vec<Field> {
     TWO_SCALES
@@ -212,7 +222,7 @@ pub(super) fn uniform(order: usize, n: usize) -> Result<Run, String> {
     let [l2, linf, worst] = super::runs::errors(&fields, &exact);
     Ok(Run {
         case: SCALES,
-        variant: "uniform",
+        variant: UNIFORM,
         kernel,
         n,
         dimension: 2,
@@ -226,26 +236,24 @@ pub(super) fn uniform(order: usize, n: usize) -> Result<Run, String> {
     })
 }
 
-/// The same with three levels of patches round the narrow bump; the finest cells are an eighth of those of the base.
+/// The same with patches round the narrow bump, whose finest cells are those of a mesh of `n`.
 pub(super) fn refined(
     order: usize,
     n: usize,
-    (variant, superposition): (&'static str, Superposition),
+    (variant, levels, superposition): (&'static str, u32, Superposition),
 ) -> Result<Run, String> {
     let bumps = two_scales();
-    let base = base(n)?;
+    let (_, centre, radius) = TWO_SCALES[1];
+    let base = base(n >> levels)?;
     let mut patches: Vec<Patch<2>> = Vec::new();
     // Boxes in cells of the base, divided by the refinement so far.
     let mut corner = [0; 2];
-    for (level, half) in HALF_SIDES.into_iter().enumerate() {
-        let centre = TWO_SCALES[1].1;
-        let scale = 1 << level;
-        let fine =
-            Mesh::of_box([-1.0; 2], [1.0; 2], [n * scale; 2], Centring::Cell).map_err(|e| e.to_string())?;
-        let round = Patch::covering(&fine, centre.map(|c| c - half), centre.map(|c| c + half), 2);
-        let parent = level.checked_sub(1);
+    for level in 0..levels {
+        let parent_mesh = self::base(n >> (levels - level))?;
+        let half = radius + BEYOND * parent_mesh.spacing()[0];
+        let round = Patch::covering(&parent_mesh, centre.map(|c| c - half), centre.map(|c| c + half), 2);
         let first = std::array::from_fn(|a| round.first[a] - corner[a]);
-        patches.push(Patch { parent, first, ..round });
+        patches.push(Patch { parent: patches.len().checked_sub(1), first, ..round });
         corner = round.first.map(|c| 2 * c);
     }
     let params = RefineParams { order, smoothing: Some(2.0), superposition, ..RefineParams::default() };
@@ -255,9 +263,9 @@ pub(super) fn refined(
         case: SCALES,
         variant,
         kernel: Kernel::Gaussian { order, smoothing: Some(2.0) },
-        n: 8 * n,
+        n,
         dimension: 2,
-        spacing: base.spacing()[0] / 8.0,
+        spacing: 2.0 / n as f64,
         points: solved.points(),
         l2,
         linf,

@@ -27,7 +27,8 @@ const ABOUT: [(&str, &str); 6] = [
     ),
     (
         "A source with two scales",
-        "A bump of radius 0.9 and one of radius 0.08: one mesh against a base mesh with three levels of patches round the narrow one.",
+        "A bump of radius 0.9 and one of radius 1/16: one mesh against a base mesh with two levels of patches round the narrow one, and with three \
+         levels on a base mesh that is too coarse for it. N counts the finest cells.",
     ),
 ];
 
