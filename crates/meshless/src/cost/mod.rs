@@ -2,7 +2,7 @@
 //! seconds.
 //!
 //! The error is that against the exact solution where the scene has one, else against the solution of the most accurate
-//! method on a cloud finer than all others; in free space, where it is known from the spectrum of the source, that
+//! method on a cloud finer than all others, by its own estimate; in free space, where it is known from the spectrum of the source, that
 //! estimate. Seconds are those from points to solution, without errors, estimates and pictures; short runs are repeated
 //! and their median counts.
 

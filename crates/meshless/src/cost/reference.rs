@@ -15,6 +15,10 @@ const FINER: f64 = 0.7;
 /// The same for methods of low order, for which it has to make up by nodes.
 const MUCH_FINER: f64 = 0.5;
 
+/// Estimated error at which a reference is taken without a look at the next: fits of high order are the best there is unless
+/// a gap or a layer is too thin for them, which their estimates show.
+const GOOD: f64 = 1e-3;
+
 /// Order of the sharp method as a reference, by dimension.
 const ORDERS: [usize; 3] = [8, 8, 6];
 
@@ -45,14 +49,31 @@ impl<const D: usize> Reference<D> {
         tried.push((MethodName::ParticleDifference, None, MUCH_FINER));
         tried.push((MethodName::Auto, None, MUCH_FINER));
         let mut refused = None;
+        let mut best: Option<Finest<D>> = None;
         for (name, order, finer) in tried {
-            match Finest::solve(&Candidate { name, order, kernel: None }.in_scene(scene), ratio * finer) {
-                Ok(finest) => return Ok(Self::Finest(Box::new(finest))),
-                Err(error) => refused = refused.or(Some(error)),
+            let found = match Finest::solve(
+                &Candidate { name, order, kernel: None }.in_scene(scene),
+                ratio * finer,
+            ) {
+                Ok(found) => found,
+                Err(error) => {
+                    refused = refused.or(Some(error));
+                    continue;
+                }
+            };
+            if best.as_ref().is_none_or(|best| found.doubt() < best.doubt()) {
+                best = Some(found);
+            }
+            if best.as_ref().is_some_and(|best| best.doubt() <= GOOD) {
+                break;
             }
         }
-        // What is wrong with the scene is what the first attempt says.
-        refused.map_or(Ok(Self::Exact), Err)
+        match (best, refused) {
+            (Some(best), _) => Ok(Self::Finest(Box::new(best))),
+            // What is wrong with the scene is what the first attempt says.
+            (None, Some(error)) => Err(error),
+            (None, None) => Ok(Self::Exact),
+        }
     }
 
     /// What it is.
@@ -107,6 +128,11 @@ impl<const D: usize> Finest<D> {
         let solved = solve_in::<D>(&scene, &plan.companion(), None, &mut Silent)?;
         let own_error = estimate(&scene, &plan, &solved)?.l2;
         Ok(Self { solved, plan, own_error })
+    }
+
+    /// Its estimated error; infinite where there is none.
+    fn doubt(&self) -> f64 {
+        self.own_error.unwrap_or(f64::INFINITY)
     }
 
     /// Its values at the nodes of another solution, where both see the same region.
