@@ -119,6 +119,22 @@ fn the_prediction_of_the_unknowns_is_close() {
 }
 
 #[test]
+fn multigrid_of_the_sharp_method_smooths_by_incomplete_factors() {
+    use meshless_sparse::{PreconditionerKind, Restriction, SmootherKind};
+    let params = |method: &str| {
+        let text = meshless_tests::kraus::interior(1e10, 0.3, 1)
+            + &format!("[method]\nname = \"{method}\"\nsolver = \"multigrid\"\n");
+        let scene = Scene::parse(&text, "gallery.toml").expect("a scene");
+        match Plan::new(&scene).expect("a plan").solver.preconditioner {
+            PreconditionerKind::Multigrid(params) => (params.smoother, params.restriction),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(params("sharp"), (SmootherKind::Ilu0, Restriction::Own));
+    assert_eq!(params("gfdm-hybrid"), (SmootherKind::GaussSeidel, Restriction::Transpose));
+}
+
+#[test]
 fn the_solver_fits_size_and_matrix() {
     let solver = |small: Small, method: &str| {
         let text = small.text() + "\n[method]\n" + method + "\n";

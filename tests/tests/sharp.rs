@@ -1,7 +1,9 @@
 //! The sharp method: orders, contrasts, conditions.
 
+use meshless::interfaces::MethodError;
+use meshless::plan::{Plan, Stage};
 use meshless::scene::{MethodName, Scene};
-use meshless::{Error, Solution};
+use meshless::{Error, Silent, Solution, execute};
 use meshless_tests::kraus;
 use meshless_tests::order::observed;
 use meshless_tests::particle_difference::{Regularity, ball, circle, corner_45, corner_90, cylinder};
@@ -27,6 +29,16 @@ fn the_interior_interface_converges_at_the_order_of_the_polynomials() {
             .map(|h| (h, errors(&kraus::interior(1e6, kraus::SUPPORT * h, 1), order)[0]))
             .to_vec();
         assert!(observed(&ladder) > least, "order {order}: {ladder:?}");
+    }
+}
+
+#[test]
+fn order_two_is_of_second_order_at_any_contrast() {
+    for contrast in [1e2, 1e10] {
+        let ladder: Vec<(f64, f64)> = [0.2, 0.1, 0.05]
+            .map(|h| (h, errors(&kraus::interior(contrast, kraus::SUPPORT * h, 1), 2)[0]))
+            .to_vec();
+        assert!(observed(&ladder) > 1.8 && ladder[2].1 < 1e-4, "{contrast:e}: {ladder:?}");
     }
 }
 
@@ -73,4 +85,68 @@ fn what_it_cannot_do_is_said() {
     assert!(error.to_string().contains("no steps in time"), "{error}");
     let error = solve(&ball(100.0, 0.1, 0.25, Regularity::Irregular(1)), 10).expect_err("too high an order");
     assert!(error.to_string().contains("no order 10"), "{error}");
+}
+
+/// A film of a fifth of the spacing between a core and what surrounds it.
+fn film(spacing: f64, method: &str) -> String {
+    let ring = |name: &str, radius: &str, eta: &str, exact: &str| {
+        let shape = if radius.is_empty() {
+            String::new()
+        } else {
+            format!("sphere = {{ center = [0.0, 0.0], radius = {radius} }}\n")
+        };
+        format!(
+            "[[regions]]\nname = \"{name}\"\n{shape}diffusivity = \"{eta}\"\nsource = \"4 + 0*x\"\nexact = \"{exact}\"\n"
+        )
+    };
+    // u = c - r^2 / eta in every ring; the constants make it continuous.
+    let (inner, outer) = (0.5_f64, 0.51_f64);
+    let film = outer * outer * (1e-3 - 1.0);
+    let core = film + inner * inner * (1.0 - 1e-3);
+    format!(
+        "title = \"Film\"\ndimension = 2\n[domain]\nbox = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}\n\
+         [points]\nspacing = {spacing:?}\nlayout = \"irregular\"\nseed = 1\n[method]\n{method}\n"
+    ) + &ring("core", "0.5", "1", &format!("{core:e} - (x^2 + y^2)"))
+        + &ring("film", "0.51", "1e3", &format!("{film:e} - (x^2 + y^2)/1e3"))
+        + &ring("outside", "", "1", "-(x^2 + y^2)")
+        + "[[boundaries]]\nface = \"all\"\ndirichlet = \"-(x^2 + y^2)\"\n"
+}
+
+#[test]
+fn a_film_too_thin_for_the_fits_is_an_error_that_says_which_spacing_resolves_it() {
+    let sharp = "name = \"sharp\"\norder = 6";
+    let scene = Scene::parse(&film(0.05, sharp), "film.toml").expect("a scene");
+    let error = solve_scene(&scene).expect_err("the film has too few nodes");
+    let Error::Method(MethodError::Unresolved { position, spacing, .. }) = &error else { panic!("{error}") };
+    let radius = position[0].hypot(position[1]);
+    assert!((0.5..=0.51).contains(&radius), "{error}");
+    assert!(error.to_string().contains("take a spacing of about"), "{error}");
+    // A tenth of the spacing everywhere would be many nodes: a ring of it will do.
+    let graded = film(0.05, sharp).replace(
+        "spacing = 0.05",
+        &format!("spacing = \"{spacing:?} + 0.3*max(0, abs(sqrt(x^2 + y^2) - 0.505) - 0.008)\""),
+    );
+    let scene = Scene::parse(&graded, "film.toml").expect("a scene");
+    let errors = solve_scene(&scene).expect("resolved").report.errors.expect("exact");
+    assert!(errors.l2 < 1e-7, "{errors:?}");
+}
+
+#[test]
+fn where_the_plan_chose_the_method_it_falls_back_on_the_conservative_one() {
+    let named = Scene::parse(&film(0.05, "name = \"sharp\"\norder = 6"), "film.toml").expect("a scene");
+    assert_eq!(Plan::new(&named).expect("a plan").fallback, None);
+    let free = Scene::parse(&film(0.05, "name = \"auto\""), "film.toml").expect("a scene");
+    let sharp = Plan::new(&named).expect("a plan");
+    let mut plan = Plan::new(&free).expect("a plan");
+    plan.method = sharp.method;
+    plan.fallback = Some(MethodName::GfdmHybrid);
+    plan.stages.retain(|stage| *stage != Stage::Estimate);
+    let report = execute(&free, &plan, &mut Silent).expect("the conservative method solves it").report;
+    assert_eq!(report.method, "gfdm-hybrid");
+    assert!(report.nodes.conservative > 0);
+    let why = report.fallback.expect("why");
+    assert!(why.contains("in place of \"sharp\"") && why.contains("too thin"), "{why}");
+    // Nothing that the plan leaves out comes back.
+    assert_eq!(report.estimate.l2, None);
+    assert!(report.errors.expect("exact").l2 < 1e-1);
 }

@@ -62,6 +62,86 @@ fn diffusivity() -> impl Strategy<Value = f64> {
     (-6.0..6.0_f64).prop_map(|exponent| 10.0_f64.powf(exponent))
 }
 
+/// Discs beside each other and within each other: centers on the x axis, radii, and the disc that each lies in.
+const DISCS: [(f64, f64, Option<usize>); 6] = [
+    (-0.5, 0.4, None),
+    (0.5, 0.4, None),
+    (-0.68, 0.14, Some(0)),
+    (-0.3, 0.15, Some(0)),
+    (0.32, 0.14, Some(1)),
+    (0.7, 0.15, Some(1)),
+];
+
+/// A material: diffusivity, and the constant, the slopes and the curvature of its solution.
+type Material = (f64, [f64; 4]);
+
+/// A plate with some of the discs in it. The solution of each is a quadratic polynomial of its own, the steeper the softer it
+/// is so that fluxes are of one size; u and its flux jump accordingly.
+fn discs(present: &[bool; 6], materials: &[Material; 7], fluxes: bool) -> String {
+    // Coefficients of 1, x, y, x^2, y^2 of u.
+    let softest = materials.iter().fold(f64::INFINITY, |least, m| least.min(m.0));
+    let u = |(eta, [constant, x, y, curvature]): Material| {
+        let g = softest / eta;
+        [constant, g * x, g * y, g * (curvature + 0.3), g * (curvature - 0.3)]
+    };
+    let text = |[c, x, y, xx, yy]: [f64; 5]| {
+        format!("({c:e}) + ({x:e})*x + ({y:e})*y + ({xx:e})*x^2 + ({yy:e})*y^2")
+    };
+    let mut scene =
+        "title = \"Discs\"\ndimension = 2\n[domain]\nbox = { min = [-1.0, -1.0], max = [1.0, 1.0] }\n\
+                     [points]\nspacing = 0.08\nlayout = \"irregular\"\nseed = 5\n"
+            .to_owned();
+    let region = |name: &str, shape: &str, material: Material| {
+        let [.., xx, yy] = u(material);
+        format!(
+            "[[regions]]\nname = \"{name}\"\n{shape}diffusivity = \"{:e}\"\nsource = \"{:e}\"\nexact = \"{}\"\n",
+            material.0,
+            -2.0 * material.0 * (xx + yy),
+            text(u(material)),
+        )
+    };
+    let is_there = |k: usize| present[k] && DISCS[k].2.is_none_or(|parent| present[parent]);
+    // The innermost first: regions are taken in order.
+    for k in (0..6).rev().filter(|&k| is_there(k)) {
+        let (x, radius, _) = DISCS[k];
+        let shape = format!("sphere = {{ center = [{x:?}, 0.0], radius = {radius:?} }}\n");
+        scene += &region(&format!("disc {k}"), &shape, materials[k]);
+    }
+    scene += &region("plate", "", materials[6]);
+    for k in (0..6).filter(|&k| is_there(k)) {
+        let (x, radius, parent) = DISCS[k];
+        let outer = parent.unwrap_or(6);
+        let outer_name = parent.map_or_else(|| "plate".to_owned(), |parent| format!("disc {parent}"));
+        let (inside, outside) = (u(materials[k]), u(materials[outer]));
+        let flux: [f64; 5] =
+            std::array::from_fn(|m| materials[outer].0 * outside[m] - materials[k].0 * inside[m]);
+        scene += &format!(
+            "[[interfaces]]\nbetween = [\"disc {k}\", \"{outer_name}\"]\njump = \"{}\"\n\
+             flux_jump = \"((({:e}) + 2*({:e})*x)*(x - ({x:?})) + (({:e}) + 2*({:e})*y)*y)/{radius:?}\"\n",
+            text(std::array::from_fn(|m| outside[m] - inside[m])),
+            flux[1],
+            flux[3],
+            flux[2],
+            flux[4],
+        );
+    }
+    let (outside, eta) = (u(materials[6]), materials[6].0);
+    if fluxes {
+        for (face, sign) in [("bottom", -1.0), ("top", 1.0)] {
+            let slope = sign * eta;
+            scene += &format!(
+                "[[boundaries]]\nface = \"{face}\"\nflux = \"{slope:e}*(({:e}) + 2*({:e})*y)\"\n",
+                outside[2], outside[4]
+            );
+        }
+    }
+    scene + &format!("[[boundaries]]\nface = \"all\"\ndirichlet = \"{}\"\n", text(outside))
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    (diffusivity(), [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, -1.0..1.0])
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
 
@@ -76,6 +156,21 @@ proptest! {
     fn rows_of_strips_are_exact(etas in prop::collection::vec(diffusivity(), 2..5)) {
         let error = l2(&strips(&etas), Form::Harmonic);
         prop_assert!(error < 1e-9, "{etas:?}: {error:e}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
+
+    /// Whatever lies in what and is stiffer than what: contrasts from 1e-12 to 1e12.
+    #[test]
+    fn random_graphs_of_regions_are_exact(
+        present in prop::array::uniform6(prop::bool::weighted(0.7)),
+        materials in prop::array::uniform7(material()),
+        fluxes in any::<bool>(),
+    ) {
+        let error = l2(&discs(&present, &materials, fluxes), Form::Harmonic);
+        prop_assert!(error < 1e-9, "{present:?} {materials:?} {fluxes}: {error:e}");
     }
 }
 
@@ -101,8 +196,14 @@ fn the_estimate_is_near_the_error() {
         let mut scene = Scene::parse(&text, "gallery.toml").expect("a scene");
         scene.method.name = MethodName::Sharp;
         scene.method.order = Some(order);
-        let report =
-            execute(&scene, &Plan::new(&scene).expect("a plan"), &mut Silent).expect("a solution").report;
+        let Solution { report, field, .. } =
+            execute(&scene, &Plan::new(&scene).expect("a plan"), &mut Silent).expect("a solution");
+        // Node by node: what it leaves of the error is small.
+        let (exact, estimated) = (field.exact.expect("exact"), field.estimate.expect("one order more"));
+        let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+        let all = norm(&mut field.u.iter().zip(&exact).map(|(u, e)| u - e));
+        let left = norm(&mut field.u.iter().zip(&exact).zip(&estimated).map(|((u, e), d)| u - e - d));
+        assert!(left < 0.5 * all, "{}: {left:e} of {all:e}", scene.title);
         let (error, estimate) = (report.errors.expect("exact").l2, report.estimate.l2.expect("an estimate"));
         assert!((0.2..5.0).contains(&(estimate / error)), "{}: {estimate:e} for {error:e}", scene.title);
     }

@@ -1,6 +1,7 @@
 //! `meshless plan`.
 
 use meshless::plan::{Effect, Plan};
+use meshless::scene::MethodName;
 use serde::Serialize;
 
 use crate::Failure;
@@ -14,6 +15,7 @@ struct PlanJson<'a> {
     effects: Vec<&'static str>,
     method: &'static str,
     why: &'a str,
+    fallback: Option<&'static str>,
     solver: String,
     stages: Vec<&'static str>,
     skipped: Vec<SkippedJson>,
@@ -46,6 +48,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         effects: plan.effects.iter().map(Effect::name).collect(),
         method: plan.method.name.as_str(),
         why: &plan.method.why,
+        fallback: plan.fallback.map(MethodName::as_str),
         solver: plan.solver_name(),
         stages: plan.stages.iter().map(|s| s.name()).collect(),
         skipped: plan.skipped.iter().map(|s| SkippedJson { what: s.what, why: s.why }).collect(),

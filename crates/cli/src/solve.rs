@@ -71,6 +71,9 @@ fn print(report: &Report, solution: &Solution) {
         report.unknowns,
         report.spacing
     );
+    if let Some(why) = &report.fallback {
+        say!("fallback    {why}");
+    }
     let nodes = &report.nodes;
     say!(
         "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",

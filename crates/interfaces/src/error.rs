@@ -22,8 +22,8 @@ pub enum MethodError {
     },
     /// The nodes near an interface do not determine the polynomials of its sides.
     #[error(
-        "the {nodes} nodes round node {node} (near {position:?}) do not resolve what is there (the fit reproduces its \
-         value up to {remainder:.1e}): a gap or a layer needs a spacing of about {spacing:.2e}, or a lower order"
+        "the {nodes} nodes round node {node} (near {position:?}) do not determine the value there: the gap or layer that it \
+         lies in is too thin for the fit; take a spacing of about {spacing:.2e} there, or a lower order"
     )]
     Unresolved {
         /// The node.
@@ -32,9 +32,7 @@ pub enum MethodError {
         position: Vec<f64>,
         /// Nodes of the largest stencil that was tried.
         nodes: usize,
-        /// What is left of the reproduction of the value.
-        remainder: f64,
-        /// A spacing that may do.
+        /// A spacing that resolves the gap or layer.
         spacing: f64,
     },
     /// A Voronoi cell could not be closed.

@@ -23,6 +23,8 @@ pub struct NodalField {
     pub region: Vec<u16>,
     /// How the row of the node was made.
     pub kind: Vec<RowKind>,
+    /// The estimated error, where the method is compared with a higher order of itself on the same nodes.
+    pub estimate: Option<Vec<f64>>,
     /// What the stencil and the row of the node look like, where the plan asks for it.
     pub diagnosis: Option<Vec<NodeDiagnosis>>,
 }
@@ -42,6 +44,7 @@ impl NodalField {
             u: u.to_vec(),
             gradient: gradient.map(|g| g.iter().map(padded).collect()),
             exact,
+            estimate: None,
             eta: discrete.eta.clone(),
             region: discrete.labels.clone(),
             kind: kinds.to_vec(),

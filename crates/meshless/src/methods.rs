@@ -67,7 +67,7 @@ pub const METHODS: &[MethodInfo] = &[
     },
     MethodInfo {
         name: "sharp",
-        order: "4-12 / 4-12",
+        order: "2-16 / 2-16",
         dimensions: "1, 2, 3",
         limits: "one polynomial for each region of a stencil, the equation and the interface conditions built in: the \
                  order of the polynomials (`order`, even) at any contrast; no maximum principle, not conservative, \

@@ -92,6 +92,9 @@ fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
         add("wrong_sign", |d| d.wrong_sign);
         add("dominance_error", |d| d.dominance_error);
     }
+    if let Some(estimate) = &field.estimate {
+        fields.push(VtuField::scalars("estimated_error", estimate.clone()));
+    }
     if let Some(exact) = &field.exact {
         fields.push(VtuField::scalars("error", field.u.iter().zip(exact).map(|(u, e)| u - e).collect()));
     }

@@ -19,6 +19,9 @@ pub struct Report {
     pub method: String,
     /// Order of the method: the polynomial degree that its stencils reproduce.
     pub order: usize,
+    /// Why another method ran than the plan says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fallback: Option<String>,
     /// Largest diffusivity of a node over the smallest.
     pub contrast: f64,
     /// What the scene calls for.

@@ -77,15 +77,57 @@ impl<const D: usize> Fit<D> {
         self.wanted.resize(self.qr.columns(), 0.0);
         let (column, size) = axis.map_or((0, 1.0), |axis| (1 + axis, 1.0 / stencil.radius));
         self.wanted[column] = size;
+        let particular = self.parts.particular_at_center(0, axis);
+        self.combine(stencil, particular.map(|p| size * p), out) / size
+    }
+
+    /// Solves for all polynomials at once; false where the rows do not determine them all.
+    pub(super) fn solve(
+        &mut self,
+        stencil: &Stencil<D>,
+        value: impl Fn(u32) -> f64,
+        constant: impl Fn(u32) -> f64,
+    ) -> bool {
+        if self.qr.rank() < self.qr.columns() {
+            return false;
+        }
+        self.factors.clear();
+        self.factors.extend(self.given.iter().map(|given| {
+            let constants = given.constants.iter().filter(|(_, c)| *c != 0.0);
+            given.known + constants.map(|&(part, c)| c * constant(stencil.parts[part])).sum::<f64>()
+        }));
+        let nodes = stencil.nodes.iter().zip(&self.weights);
+        self.factors.iter_mut().zip(nodes).for_each(|(row, (&j, weight))| *row += weight * value(j));
+        self.qr.apply_transpose(&mut self.factors);
+        self.z.resize(self.qr.columns(), 0.0);
+        self.qr.back_substitute(&self.factors, &mut self.z);
+        true
+    }
+
+    /// Value and gradient (in z) of the own polynomial at `z`, after [`Fit::solve`].
+    pub(super) fn own(&mut self, maker: &Maker<'_, D>, z: &[f64; D]) -> (f64, [f64; D]) {
+        let mut jet = std::mem::take(&mut self.parts.jet);
+        self.parts.evaluate(maker, 0, z, &mut jet);
+        let own = &self.z[..jet.values.len()];
+        let value: f64 = own.iter().zip(&jet.values).map(|(c, v)| c * v).sum();
+        let slope = |axis: usize| own.iter().zip(&jet.gradients).map(|(c, g)| c * g[axis]).sum::<f64>();
+        let particular = |row: &Row<D>| self.parts.apply_to_particular(0, row)[0];
+        let gradient = std::array::from_fn(|axis| slope(axis) + particular(&Row::of_slope(axis)));
+        let value = value + particular(&Row::of_value(1.0));
+        self.parts.jet = jet;
+        (value, gradient)
+    }
+
+    /// The combination of values and data that gives what is wanted. Returns what is left of its reproduction.
+    fn combine(&mut self, stencil: &Stencil<D>, particular: [f64; 2], out: &mut Combination) -> f64 {
         self.z.resize(self.qr.columns(), 0.0);
         self.factors.resize(self.given.len(), 0.0);
-        let remainder = self.qr.least_norm(&self.wanted, &mut self.z, &mut self.factors) / size;
+        let remainder = self.qr.least_norm(&self.wanted, &mut self.z, &mut self.factors);
         out.values.clear();
         out.values.extend(self.factors.iter().zip(&self.weights).map(|(f, w)| f * w));
         out.constants.clear();
         out.constants.resize(stencil.parts.len(), 0.0);
-        let particular = self.parts.particular_at_center(0, axis);
-        (out.known, out.unit_source) = (size * particular[0], size * particular[1]);
+        [out.known, out.unit_source] = particular;
         for (factor, given) in self.factors.iter().zip(&self.given) {
             out.known += factor * given.known;
             out.unit_source += factor * given.unit_source;

@@ -9,6 +9,7 @@ use super::interface::InterfacePoints;
 use super::params::{Form, SharpParams};
 use super::particular::Particular;
 use super::stencil::Stencil;
+use super::thickness;
 use super::unknowns::Unknowns;
 use crate::{Condition, Material, MethodError, Problem};
 
@@ -93,8 +94,8 @@ impl<'a, const D: usize> Maker<'a, D> {
             params,
             harmonic: problem.materials.iter().map(is_harmonic).collect(),
             particular: fitted.then(|| Particular::new(params.source_degree())),
-            complete_basis: Basis::complete(params.order),
-            harmonic_basis: Basis::harmonic(params.order),
+            complete_basis: Basis::complete(params.degree()),
+            harmonic_basis: Basis::harmonic(params.degree()),
             unknowns,
             interfaces,
             boundary_rows: boundary_rows(problem)?,
@@ -121,36 +122,34 @@ impl<'a, const D: usize> Maker<'a, D> {
         let outcome = self.factor_at(center, self.unknowns.part[i], scratch, |combination| {
             1.0 - combination.values[0] > LEAST_COMPLEMENT
         });
-        outcome.map_err(|remainder| MethodError::Unresolved {
+        outcome.ok_or_else(|| MethodError::Unresolved {
             node: i,
             position: center.to_vec(),
             nodes: scratch.stencil.nodes.len(),
-            remainder,
-            spacing: 0.5 * self.problem.cloud.spacing()[i],
+            spacing: thickness::resolving_spacing(self.problem, i),
         })
     }
 
-    /// The same round any point of a part; the error is what is left of the reproduction.
+    /// The same round any point of a part; `None` where no stencil determines the value or is accepted.
     pub(super) fn factor_at(
         &self,
         center: &[f64; D],
         own: u32,
         scratch: &mut Scratch<D>,
         accept: impl Fn(&Combination) -> bool,
-    ) -> Result<bool, f64> {
+    ) -> Option<bool> {
         let Scratch { stencil, fit, combination } = scratch;
         let mut count = self.params.stencil_nodes(D);
-        let mut remainder = f64::INFINITY;
         for attempt in 0..=ENLARGEMENTS {
             stencil.gather(center, own, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
             fit.factor(self, stencil);
-            remainder = fit.functional(stencil, None, combination);
+            let remainder = fit.functional(stencil, None, combination);
             if remainder <= REPRODUCTION && accept(combination) {
-                return Ok(attempt > 0);
+                return Some(attempt > 0);
             }
             count += count / 2;
         }
-        Err(remainder)
+        None
     }
 
     /// The node nearest to a point.

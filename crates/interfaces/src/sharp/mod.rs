@@ -15,6 +15,7 @@ mod particular;
 mod parts;
 mod sample;
 mod stencil;
+mod thickness;
 mod unknowns;
 
 use std::time::Instant;

@@ -5,13 +5,17 @@ pub const MAX_ORDER: [usize; 3] = [16, 16, 8];
 
 /// Nodes of a stencil in two dimensions for the orders 2, 4, 6, …: about two and a half times as many as there are
 /// harmonic polynomials of that degree.
-const NODES_2D: [usize; 8] = [14, 24, 32, 50, 60, 75, 87, 100];
+const NODES_2D: [usize; 8] = [12, 24, 32, 50, 60, 75, 87, 100];
 
 /// The same in three dimensions.
-const NODES_3D: [usize; 4] = [22, 50, 110, 190];
+const NODES_3D: [usize; 4] = [24, 50, 110, 190];
 
 /// Nodes of a stencil in one dimension beyond the order.
 const NODES_1D_BEYOND: usize = 3;
+
+/// At order 2 as well: with polynomials of degree 2 errors are 10 to 100 times as large and clouds decide about the order; see
+/// `docs/sharp.md`.
+const LEAST_DEGREE: usize = 3;
 
 /// Degrees that the polynomials of sources have beyond those of the order, in the harmonic form: a particular part that
 /// is better than the rest makes the form as accurate as the general one, whose equation rows see the source as well.
@@ -30,8 +34,10 @@ pub enum Form {
 /// Parameters of the sharp method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharpParams {
-    /// Degree of the polynomials, even.
+    /// Order of the error in u, even.
     pub order: usize,
+    /// Degree of the polynomials; `None` for the order, or one more at order 2.
+    pub degree: Option<usize>,
     /// Nodes of a stencil, the node itself included; `None` for the number that suits the order.
     pub nodes: Option<usize>,
     /// Weight of the rows that say how u and its flux jump.
@@ -48,6 +54,7 @@ impl Default for SharpParams {
     fn default() -> Self {
         Self {
             order: 4,
+            degree: None,
             nodes: None,
             jump_weight: 10.0,
             equation_weight: 100.0,
@@ -58,9 +65,14 @@ impl Default for SharpParams {
 }
 
 impl SharpParams {
+    /// Degree of the polynomials.
+    pub fn degree(&self) -> usize {
+        self.degree.unwrap_or(self.order.max(LEAST_DEGREE))
+    }
+
     /// Degree of the polynomials that sources are fitted by in the harmonic form.
     pub fn source_degree(&self) -> usize {
-        self.source_degree.unwrap_or(self.order - 2 + SOURCE_DEGREES_BEYOND)
+        self.source_degree.unwrap_or(self.degree() - 2 + SOURCE_DEGREES_BEYOND)
     }
 
     /// Nodes of a stencil in `dimension` dimensions, the node itself included.

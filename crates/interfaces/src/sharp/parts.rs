@@ -17,6 +17,10 @@ impl<const D: usize> Row<D> {
         Self { value, gradient: [0.0; D], laplacian: 0.0 }
     }
 
+    pub(super) fn of_slope(axis: usize) -> Self {
+        Self { gradient: std::array::from_fn(|k| f64::from(k == axis)), ..Self::of_value(0.0) }
+    }
+
     pub(super) fn is_value(&self) -> bool {
         self.laplacian == 0.0 && self.gradient == [0.0; D]
     }

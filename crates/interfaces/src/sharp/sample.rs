@@ -11,6 +11,13 @@ pub(super) struct Values<'a> {
     constants: &'a [f64],
 }
 
+/// Whose fit a point belongs to.
+#[derive(Debug, Clone, Copy)]
+struct Owner {
+    node: usize,
+    region: u16,
+}
+
 impl<'a> Values<'a> {
     /// Of a solution: its own unknowns, or its nodal values where nothing floats.
     pub(super) fn new(u: &'a [f64], split: Option<&'a SplitValues>) -> Self {
@@ -67,20 +74,82 @@ impl<const D: usize> Maker<'_, D> {
         }))
     }
 
-    /// Value and gradient anywhere.
-    fn sample(&self, x: &[f64; D], values: &Values<'_>, scratch: &mut Scratch<D>) -> Option<Sample<D>> {
+    /// Region of a point, and the node of it that is nearest; `None` where none is near.
+    fn owner(&self, x: &[f64; D]) -> Option<Owner> {
         let nearest = self.nearest_one(x)?;
         let region = self.problem.regions.label(x, self.problem.cloud.spacing()[nearest]);
-        let part = self.unknowns.part[self.nearest_of(region, x)?];
-        self.factor_at(x, part, scratch, |_| true).ok()?;
-        let value = self.evaluate(None, values, scratch) + self.constant(part, values);
-        let gradient = std::array::from_fn(|axis| self.evaluate(Some(axis), values, scratch));
-        Some(Sample { value, gradient, region })
+        Some(Owner { node: self.nearest_of(region, x)?, region })
     }
 
-    /// Values and gradients at many points.
+    /// Value and gradient at a point from a fit round it.
+    fn sample(
+        &self,
+        x: &[f64; D],
+        owner: Owner,
+        values: &Values<'_>,
+        scratch: &mut Scratch<D>,
+    ) -> Option<Sample<D>> {
+        let part = self.unknowns.part[owner.node];
+        self.factor_at(x, part, scratch, |_| true)?;
+        let value = self.evaluate(None, values, scratch) + self.constant(part, values);
+        let gradient = std::array::from_fn(|axis| self.evaluate(Some(axis), values, scratch));
+        Some(Sample { value, gradient, region: owner.region })
+    }
+
+    /// Values and gradients at points: a fit round each of a few, and the fits of the nodes nearest to many, so that a
+    /// picture takes no longer than the rows did.
     pub(super) fn samples(&self, points: &[[f64; D]], values: &Values<'_>) -> Vec<Option<Sample<D>>> {
-        points.par_iter().map_init(Scratch::default, |scratch, x| self.sample(x, values, scratch)).collect()
+        let owners: Vec<Option<Owner>> = points.par_iter().map(|x| self.owner(x)).collect();
+        if points.len() <= self.problem.cloud.len() {
+            let sample = |scratch: &mut Scratch<D>, (x, owner): (&[f64; D], &Option<Owner>)| {
+                self.sample(x, (*owner)?, values, scratch)
+            };
+            return points.par_iter().zip(&owners).map_init(Scratch::default, sample).collect();
+        }
+        let node = |k: &usize| owners[*k].map(|owner| owner.node);
+        let mut order: Vec<usize> = (0..points.len()).filter(|k| owners[*k].is_some()).collect();
+        order.sort_by_key(node);
+        let groups: Vec<&[usize]> = order.chunk_by(|a, b| node(a) == node(b)).collect();
+        let found: Vec<Vec<Option<Sample<D>>>> = groups
+            .par_iter()
+            .map_init(Scratch::default, |scratch, group| {
+                let members = group.iter().filter_map(|&k| Some((points[k], owners[k]?)));
+                self.sample_group(&members.collect::<Vec<_>>(), values, scratch)
+            })
+            .collect();
+        let mut samples = vec![None; points.len()];
+        order.iter().zip(found.into_iter().flatten()).for_each(|(&k, sample)| samples[k] = sample);
+        samples
+    }
+
+    /// Values and gradients at points of one region round one node, from the fit of that node.
+    fn sample_group(
+        &self,
+        members: &[([f64; D], Owner)],
+        values: &Values<'_>,
+        scratch: &mut Scratch<D>,
+    ) -> Vec<Option<Sample<D>>> {
+        let Some((_, Owner { node, .. })) = members.first() else { return Vec::new() };
+        let (part, center) = (self.unknowns.part[*node], self.problem.cloud.points()[*node]);
+        let solved = self.factor_at(&center, part, scratch, |_| true).is_some()
+            && scratch.fit.solve(
+                &scratch.stencil,
+                |j| values.w[j as usize],
+                |part| self.constant(part, values),
+            );
+        let (scale, constant) = (self.unknowns.scale[part as usize], self.constant(part, values));
+        let radius = scratch.stencil.radius;
+        let sample = |(x, owner): &([f64; D], Owner)| {
+            if !solved {
+                // Not all polynomials are determined: what a fit round the point says of the point itself is.
+                return self.sample(x, *owner, values, scratch);
+            }
+            let z = std::array::from_fn(|k| (x[k] - center[k]) / radius);
+            let (value, slope) = scratch.fit.own(self, &z);
+            let gradient = slope.map(|g| scale * g / radius);
+            Some(Sample { value: constant + scale * value, gradient, region: owner.region })
+        };
+        members.iter().map(sample).collect()
     }
 
     /// `s` times a functional of the own polynomial of the stencil that was factored last.

@@ -16,5 +16,6 @@ mod neumann;
 mod particle_difference;
 mod phase_field;
 mod reaction;
+mod sharp;
 mod slits;
 mod support;

@@ -126,7 +126,7 @@ impl<const D: usize> Finest<D> {
         let scene = build::with_spacing_times(scene, ratio);
         let plan = Plan::new(&scene)?;
         let solved = solve_in::<D>(&scene, &plan.companion(), None, &mut Silent)?;
-        let own_error = estimate(&scene, &plan, &solved)?.l2;
+        let own_error = estimate(&scene, &plan, &solved)?.0.l2;
         Ok(Self { solved, plan, own_error })
     }
 

@@ -21,15 +21,16 @@ use crate::{Error, build};
 /// Spacing of the coarser cloud over that of the finer one.
 const RATIO: f64 = 2.0;
 
-/// The estimate of a method's own choice.
+/// The estimate of a method's own choice, and where the method is compared with itself on the same cloud, `u` minus the finer
+/// solution at every node.
 pub(crate) fn estimate<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     solved: &Solved<D>,
-) -> Result<Estimate, Error> {
+) -> Result<(Estimate, Option<Vec<f64>>), Error> {
     match plan.method.params.finer(D) {
         Some(finer) if scene.time.is_none() => against_finer(plan, &finer, solved),
-        _ => against_coarser(scene, plan, solved),
+        _ => Ok((against_coarser(scene, plan, solved)?, None)),
     }
 }
 
@@ -37,7 +38,7 @@ fn against_finer<const D: usize>(
     plan: &Plan,
     finer: &MethodParams,
     solved: &Solved<D>,
-) -> Result<Estimate, Error> {
+) -> Result<(Estimate, Option<Vec<f64>>), Error> {
     let problem = solved.discrete.problem();
     let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
     let method = finer.build::<D>();
@@ -45,17 +46,23 @@ fn against_finer<const D: usize>(
     let better = match outcome {
         Ok(better) => better,
         Err(error) => {
-            return Ok(Estimate {
-                l2: None,
-                why_not: Some(format!("no solution of a higher order: {error}")),
-            });
+            let why_not = Some(format!("no solution of a higher order: {error}"));
+            return Ok((Estimate { l2: None, why_not }, None));
         }
     };
-    let mut norms = ErrorNorms::default();
-    for ((&u, &better), measure) in solved.system.u.iter().zip(&better.u).zip(solved.discrete.measures()) {
-        norms.add(measure, u - better, better);
+    let measures = solved.discrete.measures();
+    let mut differences: Vec<f64> = solved.system.u.iter().zip(&better.u).map(|(u, b)| u - b).collect();
+    if solved.system.up_to_constant {
+        // Where nothing fixes the constant of u, only what differs beside a constant is an error.
+        let total: f64 = differences.iter().zip(&measures).map(|(d, m)| d * m).sum();
+        let shift = total / measures.iter().sum::<f64>();
+        differences.iter_mut().for_each(|d| *d -= shift);
     }
-    Ok(Estimate { l2: Some(norms.l2()), why_not: None })
+    let mut norms = ErrorNorms::default();
+    for ((&difference, &better), &measure) in differences.iter().zip(&better.u).zip(&measures) {
+        norms.add(measure, difference, better);
+    }
+    Ok((Estimate { l2: Some(norms.l2()), why_not: None }, Some(differences)))
 }
 
 fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>) -> Result<Estimate, Error> {

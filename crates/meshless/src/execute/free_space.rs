@@ -76,6 +76,7 @@ pub(super) fn execute<const D: usize>(
     let report = report::report(scene, plan, &source, u, chosen, errors, seconds, probes);
     let pad = |p: &[f64; D]| std::array::from_fn(|a| if a < D { p[a] } else { 0.0 });
     let field = NodalField {
+        estimate: None,
         dimension: D,
         points: source.points.iter().map(pad).collect(),
         gradient: gradient.map(|g| g.iter().map(pad).collect()),

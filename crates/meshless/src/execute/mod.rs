@@ -132,6 +132,23 @@ pub(crate) fn solve_in<const D: usize>(
     }
 }
 
+/// The same; where the nodes do not resolve what the method needs, as the plan says that is gone on with then. That plan is
+/// returned, too.
+fn solve_or_fall_back<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    checkpoint: Option<&Checkpoint>,
+    progress: &mut dyn Progress,
+) -> Result<(Solved<D>, Option<Plan>), Error> {
+    match solve_in(scene, plan, checkpoint, progress) {
+        Err(Error::Method(error)) => match plan.after(&error, scene)? {
+            Some(other) => Ok((solve_in(scene, &other, checkpoint, progress)?, Some(other))),
+            None => Err(error.into()),
+        },
+        outcome => Ok((outcome?, None)),
+    }
+}
+
 fn solve_steady<const D: usize>(
     scene: &Scene,
     plan: &Plan,
@@ -161,7 +178,9 @@ fn execute_in<const D: usize>(
     progress: &mut dyn Progress,
 ) -> Result<Solution, Error> {
     let start = Instant::now();
-    let mut solved = solve_in::<D>(whole, plan, checkpoint, progress)?;
+    let (mut solved, other) = solve_or_fall_back::<D>(whole, plan, checkpoint, progress)?;
+    let fallback = other.as_ref().map(|other| other.method.why.clone());
+    let plan = other.as_ref().unwrap_or(plan);
     // All that follows is about the end.
     let scene = &whole.time.as_ref().map_or_else(|| whole.clone(), |time| whole.at_time(time.end));
     let mut seconds = solved.seconds.clone();
@@ -189,19 +208,21 @@ fn execute_in<const D: usize>(
     seconds.post = post.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
     let before = Instant::now();
-    let estimate = if plan.runs(Stage::Estimate) {
+    let (estimate, differences) = if plan.runs(Stage::Estimate) {
         estimate(whole, plan, &solved)?
     } else {
-        Estimate { l2: None, why_not: Some("not asked for".to_owned()) }
+        (Estimate { l2: None, why_not: Some("not asked for".to_owned()) }, None)
     };
     seconds.estimate = before.elapsed().as_secs_f64();
     let before = Instant::now();
-    let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, &solved)).transpose()?;
+    let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, plan, &solved)).transpose()?;
     seconds.post += before.elapsed().as_secs_f64();
     seconds.total = start.elapsed().as_secs_f64();
     let kinds = &solved.discretization.kinds;
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
+    let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
+    let report = Report { fallback, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames })
 }

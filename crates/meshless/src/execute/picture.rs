@@ -1,11 +1,12 @@
 //! The solution as a picture: a profile in 1-D, contours in 2-D, contours on the middle plane in 3-D.
 
-use meshless_interfaces::Sampler;
+use meshless_interfaces::{Sample, Sampler};
 use meshless_output::{FieldPicture, Probe, Profile};
 use rayon::prelude::*;
 
 use super::Solved;
 use crate::Error;
+use crate::plan::Plan;
 use crate::scene::Scene;
 
 /// Width of a picture in pixels.
@@ -30,11 +31,11 @@ pub struct Picture {
     pub svg: String,
 }
 
-pub(super) fn draw<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<Picture, Error> {
+pub(super) fn draw<const D: usize>(scene: &Scene, plan: &Plan, solved: &Solved<D>) -> Result<Picture, Error> {
     let svg = if D == 1 {
         profile(scene, solved)?.to_svg(WIDTH, PROFILE_HEIGHT)?
     } else {
-        plane(scene, solved)?.to_svg(WIDTH)?
+        plane(scene, plan, solved)?.to_svg(WIDTH)?
     };
     Ok(Picture { svg })
 }
@@ -67,7 +68,23 @@ fn profile<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<Profile,
     })
 }
 
-fn plane<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<FieldPicture, Error> {
+/// The solution between the nodes, by the fits of the method where it has its own.
+fn between_nodes<const D: usize>(
+    plan: &Plan,
+    solved: &Solved<D>,
+    places: &[[f64; D]],
+) -> Result<Vec<Option<Sample<D>>>, Error> {
+    let problem = solved.discrete.problem();
+    let sampler = Sampler::new(&problem, &solved.system.u)?;
+    let own = plan.method.params.build().samples(&problem, &solved.system, places)?;
+    let own = own.unwrap_or_else(|| vec![None; places.len()]);
+    // Where a method has no fit, that of the nodes of the region is better than a hole in the picture.
+    let sample =
+        |scratch: &mut _, (x, own): (&[f64; D], Option<Sample<D>>)| own.or_else(|| sampler.at(x, scratch));
+    Ok(places.par_iter().zip(own).map_init(|| sampler.scratch(), sample).collect())
+}
+
+fn plane<const D: usize>(scene: &Scene, plan: &Plan, solved: &Solved<D>) -> Result<FieldPicture, Error> {
     let problem = solved.discrete.problem();
     let bounds = problem.domain.bounds();
     let lengths = bounds.lengths();
@@ -82,21 +99,17 @@ fn plane<const D: usize>(scene: &Scene, solved: &Solved<D>) -> Result<FieldPictu
         x[1] = bounds.min[1] + height * (index / nx) as f64 / (ny - 1) as f64;
         x
     };
-    let sampler = Sampler::new(&problem, &solved.system.u)?;
     // A little beyond the boundary, so that the outline of a curved domain can be cut from whole cells.
     let margin = 3.0 * longer / SAMPLES as f64;
-    let (values, labels): (Vec<f64>, Vec<u16>) = (0..nx * ny)
-        .into_par_iter()
-        .map_init(
-            || sampler.scratch(),
-            |scratch, index| {
-                let x = at(index);
-                let near = problem.domain.level(&x) <= margin;
-                let sample = if near { sampler.at(&x, scratch) } else { None };
-                sample.map_or((f64::NAN, 0), |s| (s.value, s.region))
-            },
-        )
-        .unzip();
+    let (mut values, mut labels) = (vec![f64::NAN; nx * ny], vec![0; nx * ny]);
+    let near: Vec<usize> =
+        (0..nx * ny).into_par_iter().filter(|&k| problem.domain.level(&at(k)) <= margin).collect();
+    let places: Vec<[f64; D]> = near.iter().map(|&k| at(k)).collect();
+    for (&k, sample) in near.iter().zip(between_nodes(plan, solved, &places)?) {
+        if let Some(sample) = sample {
+            (values[k], labels[k]) = (sample.value, sample.region);
+        }
+    }
     let levels = |level: &(dyn Fn(&[f64; D]) -> f64 + Sync)| {
         (0..nx * ny).into_par_iter().map(|k| level(&at(k))).collect()
     };

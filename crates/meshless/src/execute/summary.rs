@@ -32,6 +32,7 @@ pub(super) fn report<const D: usize>(
         spacing: solved.spacing(),
         method: plan.method.name.as_str().to_owned(),
         order: plan.method.params.order(),
+        fallback: None,
         contrast: problem.contrast(),
         effects: plan.effects.iter().map(|e| e.name().to_owned()).collect(),
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),

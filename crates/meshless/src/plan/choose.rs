@@ -1,6 +1,8 @@
 //! Decisions: method, solver, stages.
 
-use meshless_sparse::{MultigridParams, PreconditionerKind, SolverKind, SolverParams};
+use meshless_sparse::{
+    MultigridParams, PreconditionerKind, Restriction, SmootherKind, SolverKind, SolverParams,
+};
 
 use super::effects::{Effect, Survey};
 use super::{AccuracyPlan, MethodParams, MethodPlan, Skipped, Stage, method};
@@ -62,11 +64,16 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     };
     let scene = &scene.with_order(order);
     method::check(name, scene)?;
+    Ok(described(name, why, scene, survey))
+}
+
+/// A method with its parameters as the scene asks for them.
+pub(super) fn described(name: MethodName, why: String, scene: &Scene, survey: &Survey) -> MethodPlan {
     let params = MethodParams::new(name, scene, survey);
     let dimension = scene.dimension;
     let wanted = params.support(dimension).unwrap_or(SUPPORT[dimension - 1]);
     let support = scene.method.options.support.unwrap_or(wanted);
-    Ok(MethodPlan { name, why, support, params })
+    MethodPlan { name, why, support, params }
 }
 
 /// Methods that a scene with slits can name.
@@ -88,6 +95,19 @@ fn outpaces_multigrid(name: MethodName, survey: &Survey) -> bool {
     indefinite || (named && survey.contrast > MULTIGRID_CONTRAST)
 }
 
+/// Rows of the sharp method have large entries of either sign, and those that cross an interface are not conservative: an
+/// incomplete factorisation smooths them better, and their columns need a restriction of their own; see `docs/sharp.md`.
+fn multigrid(method: MethodName) -> MultigridParams {
+    match method {
+        MethodName::Sharp => MultigridParams {
+            smoother: SmootherKind::Ilu0,
+            restriction: Restriction::Own,
+            ..MultigridParams::default()
+        },
+        _ => MultigridParams::default(),
+    }
+}
+
 pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknowns: f64) -> SolverParams {
     let outpaced = outpaces_multigrid(method, survey);
     let limits = if outpaced { DIRECT_LIMIT_WITHOUT_MULTIGRID } else { DIRECT_LIMIT };
@@ -103,7 +123,7 @@ pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknown
     SolverParams {
         kind,
         preconditioner: match kind {
-            SolverKind::Multigrid => PreconditionerKind::Multigrid(MultigridParams::default()),
+            SolverKind::Multigrid => PreconditionerKind::Multigrid(multigrid(method)),
             _ => PreconditionerKind::Ilu0,
         },
         tolerance: TOLERANCE,

@@ -43,6 +43,7 @@ pub(super) fn plan(scene: &Scene, survey: Survey) -> Result<Plan, Error> {
             support: 0.0,
             params: MethodParams::new(name, scene, &survey),
         },
+        fallback: None,
         // Nothing fixes a constant because nothing is needed to: u decays, or grows as it must.
         effects: survey.effects.into_iter().filter(|e| !matches!(e, Effect::PureNeumann)).collect(),
         solver: SolverParams::default(),

@@ -6,6 +6,7 @@
 mod accuracy;
 mod choose;
 mod effects;
+mod fallback;
 mod free_space;
 mod method;
 mod predict;
@@ -30,6 +31,8 @@ pub struct Plan {
     pub effects: Vec<Effect>,
     /// The spatial method.
     pub method: MethodPlan,
+    /// What is taken where the nodes turn out not to resolve a gap or a layer; `None` where that is an error.
+    pub fallback: Option<MethodName>,
     /// The linear solver.
     pub solver: SolverParams,
     /// The error to reach by smaller and smaller spacings; without one the scene is solved once.
@@ -106,6 +109,22 @@ pub enum Stage {
     Plot,
 }
 
+impl Stage {
+    /// Whether the stage makes something of a solution rather than the solution.
+    fn is_derived(self) -> bool {
+        matches!(
+            self,
+            Self::Gradient
+                | Self::Errors
+                | Self::Probes
+                | Self::Estimate
+                | Self::Diagnosis
+                | Self::Vtu
+                | Self::Plot
+        )
+    }
+}
+
 /// Something that will not run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Skipped {
@@ -129,6 +148,7 @@ impl Plan {
         Ok(Self {
             dimension: scene.dimension,
             effects: survey.effects,
+            fallback: fallback::of(scene, &method),
             method,
             solver,
             accuracy: AccuracyPlan::new(scene),
@@ -146,18 +166,7 @@ impl Plan {
     /// The same plan without what a coarser companion solve does not need.
     pub(crate) fn companion(&self) -> Self {
         let mut plan = self.clone();
-        plan.stages.retain(|s| {
-            !matches!(
-                s,
-                Stage::Gradient
-                    | Stage::Errors
-                    | Stage::Probes
-                    | Stage::Estimate
-                    | Stage::Diagnosis
-                    | Stage::Vtu
-                    | Stage::Plot
-            )
-        });
+        plan.stages.retain(|stage| !stage.is_derived());
         plan
     }
 }

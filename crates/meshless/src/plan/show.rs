@@ -63,6 +63,13 @@ impl fmt::Display for Plan {
             if effects.is_empty() { "none".to_owned() } else { effects.join(", ") }
         )?;
         writeln!(f, "method      {} ({})", self.method.name.as_str(), self.method.why)?;
+        if let Some(fallback) = self.fallback {
+            writeln!(
+                f,
+                "fallback    {}, where the nodes do not resolve a gap or a layer",
+                fallback.as_str()
+            )?;
+        }
         writeln!(f, "solver      {}", self.solver_name())?;
         if let Some(accuracy) = &self.accuracy {
             let AccuracyPlan { tolerance, max_nodes } = accuracy;

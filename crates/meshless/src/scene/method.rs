@@ -14,7 +14,7 @@ use super::spec::{MethodName, MethodSpec, SolverName};
 const ORDERS: [u64; 2] = [2, 8];
 
 /// The same for the sharp method, whose orders are even.
-const SHARP_ORDERS: [u64; 2] = [4, 16];
+const SHARP_ORDERS: [u64; 2] = [2, 16];
 
 /// Most smoothing cycles; the diffusivity is flat long before.
 const MAX_SMOOTHING: u64 = 100;
@@ -167,7 +167,7 @@ fn order(value: &Value<'_>, method: MethodName) -> Result<usize, SceneError> {
         return Ok(order);
     }
     let message = format!("expected an even order, found {order}");
-    Err(value.error(message, "the orders of the method \"sharp\" are 4, 6, 8, … 16, and up to 8 in 3-D"))
+    Err(value.error(message, "the orders of the method \"sharp\" are 2, 4, 6, 8, … 16, and up to 8 in 3-D"))
 }
 
 fn method_name(value: &Value<'_>) -> Result<MethodName, SceneError> {
