@@ -55,6 +55,11 @@ impl Expr {
         self.program.reads(variable)
     }
 
+    /// Whether both are the same formula, or the same constant. Formulas that only have the same values are not.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.root == other.root || self.as_constant().is_some_and(|value| other.as_constant() == Some(value))
+    }
+
     /// Value at one point: `values[i]` is that of variable `i`.
     ///
     /// # Panics

@@ -20,6 +20,8 @@ const SHARE_ORDER: f64 = 2.0;
 const FIRST: f64 = 0.1;
 /// First step relative to the whole, where nothing happens at the start.
 const FIRST_OF_ALL: f64 = 1e-3;
+/// Step sizes that differ by less than this part are the same.
+const SAME: f64 = 1e-9;
 /// Steps below this part of the time reached do not change it reliably.
 const SMALLEST: f64 = 1e-13;
 
@@ -102,8 +104,11 @@ impl<S: Semidiscrete> Stepper<S> {
                 return Err(StepError::TooMany { steps: self.params.max_steps, t });
             }
             // Equal steps to the end: the last one needs no matrix of its own.
-            let count = ((end - t) / self.state.step * (1.0 - 1e-12)).ceil().max(1.0);
-            let step = (end - t) / count;
+            let count = ((end - t) / self.state.step * (1.0 - SAME)).ceil().max(1.0);
+            let even = (end - t) / count;
+            // What rounding makes of the same division is no new step size, and needs no new matrix.
+            let same = (even / self.state.step - 1.0).abs() <= SAME;
+            let step = if same { self.state.step } else { even };
             let next = if count == 1.0 { end } else { t + step };
             if step <= SMALLEST * t.abs().max(end.abs()) {
                 return Err(StepError::TooSmall { t, step });

@@ -97,35 +97,50 @@ impl Scene {
 
     /// What changes with time.
     pub(crate) fn varying(&self) -> Varying {
-        let varies = |field: &ExprField| field.varies_in_time(self.dimension);
-        let any = |field: &Option<ExprField>| field.as_ref().is_some_and(varies);
-        let (mut matrix, mut data) = (false, false);
+        let [matrix, data] =
+            self.data().map(|fields| fields.iter().any(|f| f.varies_in_time(self.dimension)));
+        Varying { matrix, data: data || matrix }
+    }
+
+    /// What is other than in the same scene at another time; both at one time each.
+    pub(crate) fn differs_from(&self, other: &Self) -> Varying {
+        let [matrix, data] = [0, 1].map(|k| {
+            let (ours, theirs) = (&self.data()[k], &other.data()[k]);
+            ours.iter().zip(theirs).any(|(a, b)| !a.expr.is_same(&b.expr))
+        });
+        Varying { matrix, data: data || matrix }
+    }
+
+    /// Expressions that make the matrix, and those that make the right-hand side only.
+    fn data(&self) -> [Vec<&ExprField>; 2] {
+        let (mut matrix, mut data) = (Vec::new(), Vec::new());
         for region in &self.regions {
-            matrix |= varies(&region.diffusivity);
-            data |= any(&region.source);
+            matrix.push(&region.diffusivity);
+            data.extend(&region.source);
         }
         for interface in &self.interfaces {
-            data |= any(&interface.jump) || any(&interface.flux_jump);
+            data.extend([&interface.jump, &interface.flux_jump].into_iter().flatten());
         }
-        let on_slits = self.slits.iter().filter_map(|slit| match &slit.condition {
-            SlitConditionSpec::Jump { jump, flux_jump } => {
-                data |= any(jump) || any(flux_jump);
-                None
+        let mut conditions: Vec<&ConditionSpec> = self.boundaries.iter().map(|b| &b.condition).collect();
+        for slit in &self.slits {
+            match &slit.condition {
+                SlitConditionSpec::Jump { jump, flux_jump } => {
+                    data.extend([jump, flux_jump].into_iter().flatten());
+                }
+                SlitConditionSpec::OnEachSide(condition) => conditions.push(condition),
             }
-            SlitConditionSpec::OnEachSide(condition) => Some(condition),
-        });
-        let on_slits: Vec<&ConditionSpec> = on_slits.collect();
-        for condition in self.boundaries.iter().map(|b| &b.condition).chain(on_slits) {
+        }
+        for condition in conditions {
             match condition {
                 ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => {
-                    data |= varies(f);
+                    data.push(f);
                 }
                 ConditionSpec::Robin { a, b, g } => {
-                    matrix |= varies(a) || varies(b);
-                    data |= varies(g);
+                    matrix.extend([a, b]);
+                    data.push(g);
                 }
             }
         }
-        Varying { matrix, data: data || matrix }
+        [matrix, data]
     }
 }

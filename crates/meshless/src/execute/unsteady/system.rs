@@ -21,8 +21,8 @@ pub(super) struct Heat<'a, const D: usize> {
     varying: Varying,
     discrete: Discrete<D>,
     method: Box<dyn Method<D>>,
-    /// Time for which `discretization` holds.
-    t: f64,
+    /// The scene as it is at the time for which `discretization` holds.
+    now: Scene,
     discretization: Discretization,
     mass: Vec<f64>,
     prepared: Option<Matrix>,
@@ -56,7 +56,7 @@ impl<'a, const D: usize> Heat<'a, D> {
             varying: scene.varying(),
             discrete,
             method,
-            t: 0.0,
+            now: scene.at_time(0.0),
             discretization,
             mass,
             prepared: None,
@@ -97,14 +97,19 @@ impl<'a, const D: usize> Heat<'a, D> {
 
     /// Makes the data anew for another time, where they depend on it.
     fn move_to(&mut self, t: f64) -> Result<(), Error> {
-        if t == self.t || !self.varying.data {
+        if !self.varying.data {
             return Ok(());
         }
         let scene = self.scene.at_time(t);
+        // Data may change at some times only, as by `if(t < 20, ..)`.
+        let changed = scene.differs_from(&self.now);
+        if !changed.data {
+            return Ok(());
+        }
         self.discrete.set_data(&scene, self.plan)?;
         self.discretization = discretize(&scene, &self.discrete, &*self.method, &mut self.seconds)?;
-        self.t = t;
-        if self.varying.matrix {
+        self.now = scene;
+        if changed.matrix {
             self.mass = masses(&self.discretization);
             self.prepared = None;
         }
