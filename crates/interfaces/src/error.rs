@@ -45,6 +45,17 @@ pub enum MethodError {
         /// What the clipping said.
         source: CellError,
     },
+    /// A phase field that has lost a region: nodes of it have come to lie in another one.
+    #[error(
+        "interfaces cannot be found from labels: region {region} is too thin near {position:?}; it must be about six \
+         nodes thick. Give more points, or the shapes of the regions"
+    )]
+    LostRegion {
+        /// The region.
+        region: u16,
+        /// A node of it.
+        position: Vec<f64>,
+    },
     /// A boundary node or a piece of boundary without a condition.
     #[error("no boundary condition at node {node} (near {position:?})")]
     NoCondition {

@@ -22,7 +22,8 @@ const NEAR: f64 = 0.9;
 /// curved interfaces: four a disc of ten spacings by a tenth of a spacing.
 const SWEEPS: usize = 2;
 
-/// Defect of the profile above which it has not begun to settle.
+/// Share of the first defect of the profile above which it has not begun to settle. At first the slope is that of the
+/// averaged step, `2/sqrt(2 pi)` over a spacing, and not `1/(sqrt 2 w)`: more than twice as steep for w of two spacings.
 const SETTLING: f64 = 0.5;
 
 /// A look at which the defect of the profile has not fallen by this share ends the run.
@@ -45,13 +46,14 @@ pub(super) fn evolve<const D: usize>(
         psi.clone(),
         PhaseFieldInfo { steps: 0, drift: 0.0, defect: f64::INFINITY, stop: PhaseFieldStop::Steps },
     );
+    let first = run.look(&start, &psi).1;
     while kept.1.steps < params.max_steps {
         let steps = STEPS_PER_LOOK.min(params.max_steps - kept.1.steps);
         (0..steps).for_each(|_| psi = run.step(&psi, time_step));
         let (drift, defect) = run.look(&start, &psi);
         let stop = if drift.abs() > params.drift {
             Some(PhaseFieldStop::Drift)
-        } else if defect < SETTLING && defect > (1.0 - LEAST_GAIN) * kept.1.defect {
+        } else if defect < SETTLING * first && defect > (1.0 - LEAST_GAIN) * kept.1.defect {
             Some(PhaseFieldStop::Settled)
         } else {
             None

@@ -10,6 +10,7 @@
 
 mod derivatives;
 mod evolve;
+mod kept;
 mod surface;
 
 use std::sync::Arc;
@@ -20,14 +21,20 @@ use meshless_neighbors::NeighborLists;
 use crate::MethodError;
 use derivatives::Derivatives;
 use evolve::evolve;
+use kept::check_kept;
 use surface::{Blend, RegionSurface};
+
+/// Standard deviation of the place of an interface of which labels alone are known, in units of the spacing: anywhere
+/// between two nodes, `1/sqrt(12)`.
+const LABELS_KNOW: f64 = 0.288_675_134_594_812_9;
 
 /// Choices of the phase field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseFieldParams {
     /// The width w of (4.10) in units of the spacing.
     pub width: f64,
-    /// Largest mean drift of an interface, in units of the spacing: the run stops before it.
+    /// Largest mean drift of an interface, in units of the spacing: the run stops before it. By default half of the
+    /// standard deviation that labels leave open, so that the drift adds an eighth to the error.
     pub drift: f64,
     /// Most time steps.
     pub max_steps: usize,
@@ -35,7 +42,7 @@ pub struct PhaseFieldParams {
 
 impl Default for PhaseFieldParams {
     fn default() -> Self {
-        Self { width: 2.0, drift: 0.15, max_steps: 400 }
+        Self { width: 2.0, drift: LABELS_KNOW / 2.0, max_steps: 400 }
     }
 }
 
@@ -71,7 +78,8 @@ pub enum PhaseFieldStop {
 ///
 /// # Errors
 /// [`MethodError::InvalidProblem`] for labels that do not fit, [`MethodError::Stencil`] where nodes near an interface
-/// have too few neighbours for second derivatives.
+/// have too few neighbours for second derivatives, and
+/// [`MethodError::LostRegion`] where a region is so thin that its nodes have come to lie in another one.
 pub fn regions_from_labels<const D: usize>(
     cloud: &Cloud<D>,
     lists: &NeighborLists,
@@ -111,5 +119,7 @@ pub fn regions_from_labels<const D: usize>(
             (region + 1 < regions).then(|| Shape::level_set(Arc::new(surface)))
         })
         .collect();
-    Ok((RegionMap::new(shapes)?, infos))
+    let map = RegionMap::new(shapes)?;
+    check_kept(cloud, lists, labels, derivatives.band(), &map)?;
+    Ok((map, infos))
 }
