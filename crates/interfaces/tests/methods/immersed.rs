@@ -158,8 +158,12 @@ fn imbalance(spacing: f64, seed: u64, eta: f64) -> f64 {
 #[test]
 fn the_flux_through_a_closed_curve_is_that_of_the_sources_inside() {
     for eta in [1e-2, 50.0] {
-        let errors = [0.05, 0.025].map(|h| (0..4).map(|seed| imbalance(h, seed, eta)).sum::<f64>() / 4.0);
-        assert!(errors[1] < 6e-3 && errors[1] < 0.5 * errors[0], "{eta}: {errors:?}");
+        let errors = [0.1, 0.05, 0.025]
+            .map(|h| (0..4).map(|seed| imbalance(h, seed, eta).powi(2)).sum::<f64>().sqrt() / 2.0);
+        // Operators and ghosts are of second order, so that a quarter is left of the error at half of the spacing; of
+        // clouds that are as irregular as these, each with other nodes, a third may be.
+        let order = 0.5 * (errors[0] / errors[2]).log2();
+        assert!(order > 3_f64.log2(), "{eta}: order {order}, {errors:?}");
     }
 }
 
