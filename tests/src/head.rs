@@ -1,10 +1,10 @@
 //! A head of four concentric layers with a current dipole in the brain: the forward problem of electroencephalography.
 //!
-//! The potential Phi of a dipole is singular, so the scene has `u = Phi - Phi_0`, where Phi_0 is the potential of the same
-//! dipole in an unbounded medium that conducts like the brain. Phi_0 is harmonic away from the dipole, so u has no
-//! source; what is left of `[sigma dPhi/dn] = 0` is `[sigma du/dn] = -[sigma] dPhi_0/dn` at the three interfaces and
-//! `sigma du/dn = -sigma dPhi_0/dn` at the scalp (the subtraction of N. Fiétier, Ö. Demirel, I. F. Sbalzarini, section
-//! 3.1). u is fixed up to a constant.
+//! The potential Phi of a dipole is singular, so the scene has `u = Phi - Phi_0` in the brain, where Phi_0 is the potential
+//! of the same dipole in an unbounded medium that conducts like the brain, and `u = Phi` elsewhere. u has no source; at the
+//! surface of the brain it jumps by Phi_0 and its flux by `sigma dPhi_0/dn`. (N. Fiétier, Ö. Demirel, I. F. Sbalzarini,
+//! section 3.1, subtract Phi_0 everywhere. In the scalp, which the skull shields, Phi is then the small difference of two
+//! large potentials.) u is fixed up to a constant.
 //!
 //! Lengths in cm, conductivities in S/m, potentials in microvolts.
 
@@ -31,7 +31,7 @@ const DEGREES: usize = 120;
 /// The scene of u on the half `y < 0`, whose cut `y = 0` is a plane of symmetry. `spacing` is a number or an expression;
 /// `at` are the probes.
 pub fn head(spacing: &str, at: &[[f64; 3]]) -> String {
-    let [_, _, _, (_, radius, sigma)] = LAYERS;
+    let radius = LAYERS[LAYERS.len() - 1].1;
     let mut text = format!(
         "title = \"Dipole in a head of four layers\"\ndimension = 3\n\n[domain]\nintersection = [\n  \
          {{ sphere = {{ center = [0.0, 0.0, 0.0], radius = {radius:?} }} }},\n  \
@@ -43,22 +43,24 @@ pub fn head(spacing: &str, at: &[[f64; 3]]) -> String {
         let shape = if i + 1 < LAYERS.len() { shape.as_str() } else { "" };
         let _ = write!(text, "[[regions]]\nname = \"{name}\"\n{shape}diffusivity = {sigma:?}\n\n");
     }
-    for pair in LAYERS.windows(2) {
-        let ((inner, _, below), (outer, _, above)) = (pair[0], pair[1]);
-        let jump = format!("{:?}*{}", below - above, normal_derivative());
-        let _ =
-            write!(text, "[[interfaces]]\nbetween = [\"{inner}\", \"{outer}\"]\nflux_jump = \"{jump}\"\n\n");
-    }
+    let [(inner, _, sigma), (outer, ..), ..] = LAYERS;
+    let (jump, flux) = (free_potential(), format!("{sigma:?}*{}", normal_derivative()));
     let _ = write!(
         text,
-        "[[boundaries]]\nface = \"outer\"\nwhere = \"y > -1e-6\"\nneumann = 0\n\n\
-         [[boundaries]]\nface = \"outer\"\nflux = \"-{sigma:?}*{}\"\n\n",
-        normal_derivative()
+        "[[interfaces]]\nbetween = [\"{inner}\", \"{outer}\"]\njump = \"{jump}\"\nflux_jump = \"{flux}\"\n\n\
+         [[boundaries]]\nface = \"outer\"\nneumann = 0\n\n"
     );
     for x in at {
         let _ = write!(text, "[[probes]]\nat = {x:?}\n\n");
     }
     text
+}
+
+/// Phi_0 as an expression.
+fn free_potential() -> String {
+    let [px, pz] = MOMENT;
+    let factor = format!("{UNIT}/(4*pi*{})", LAYERS[0].2);
+    format!("{factor}*({px}*x + {pz}*(z - {HEIGHT}))*(x^2 + y^2 + (z - {HEIGHT})^2)^-1.5")
 }
 
 /// `dPhi_0/dr` as an expression: with `d = x - x_0`, `grad Phi_0 = (p/d^3 - 3 (p.d) d/d^5) UNIT/(4 pi sigma)`.
@@ -73,7 +75,20 @@ fn normal_derivative() -> String {
     format!("{factor}*({along}*{squared}^-1.5 - 3*{moment}*{distance}*{squared}^-2.5)")
 }
 
-/// `u = Phi - Phi_0` at a point outside the sphere on which the dipole lies, by the series for concentric layers
+/// Phi_0 at a point.
+fn free(x: &[f64; 3]) -> f64 {
+    let d = [x[0], x[1], x[2] - HEIGHT];
+    let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+    UNIT * (MOMENT[0] * d[0] + MOMENT[1] * d[2])
+        / (4.0 * std::f64::consts::PI * LAYERS[0].2 * distance.powi(3))
+}
+
+/// Phi at a point outside the brain; as [`correction`].
+pub fn potential(x: &[f64; 3]) -> f64 {
+    free(x) + correction(x)
+}
+
+/// `Phi - Phi_0` at a point outside the sphere on which the dipole lies, by the series for concentric layers
 /// (J. C. de Munck, M. J. Peters, "A fast method to compute the potential in the multisphere model", IEEE Trans. Biomed.
 /// Eng. 40, 1993, sections II and III, for isotropic layers).
 ///
@@ -138,22 +153,14 @@ mod tests {
 
     const DIRECTIONS: [[f64; 3]; 3] = [[0.48, -0.6, 0.64], [0.8, 0.0, -0.6], [0.0, -0.28, 0.96]];
 
-    fn free(x: &[f64; 3]) -> f64 {
-        let d = [x[0], x[1], x[2] - HEIGHT];
-        let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-        UNIT * (MOMENT[0] * d[0] + MOMENT[1] * d[2])
-            / (4.0 * std::f64::consts::PI * LAYERS[0].2 * distance.powi(3))
-    }
-
-    fn potential(direction: &[f64; 3], r: f64) -> f64 {
-        let x = direction.map(|c| c * r);
-        free(&x) + correction(&x)
+    fn along(direction: &[f64; 3], r: f64) -> f64 {
+        potential(&direction.map(|c| c * r))
     }
 
     /// `dPhi/dr` at r from one side, by differences of fourth order.
     fn slope(direction: &[f64; 3], r: f64, side: f64) -> f64 {
         let h = 0.01 * side;
-        let values = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| potential(direction, r + (k + 1e-6) * h));
+        let values = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| along(direction, r + (k + 1e-6) * h));
         (-25.0 * values[0] + 48.0 * values[1] - 36.0 * values[2] + 16.0 * values[3] - 3.0 * values[4])
             / (12.0 * h)
     }
@@ -163,8 +170,7 @@ mod tests {
         for direction in DIRECTIONS {
             for pair in LAYERS.windows(2) {
                 let ((name, radius, below), (_, _, above)) = (pair[0], pair[1]);
-                let (inside, outside) =
-                    (potential(&direction, radius - 1e-9), potential(&direction, radius + 1e-9));
+                let (inside, outside) = (along(&direction, radius - 1e-9), along(&direction, radius + 1e-9));
                 assert!((inside - outside).abs() < 1e-5, "{name}: {inside} {outside}");
                 let (inside, outside) =
                     (below * slope(&direction, radius, -1.0), above * slope(&direction, radius, 1.0));
