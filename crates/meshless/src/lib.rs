@@ -77,8 +77,8 @@ pub mod scene;
 
 pub use error::Error;
 pub use execute::{
-    Checkpoint, Frame, Picture, Progress, Reproduction, Silent, Solution, execute, execute_from,
-    linear_system, reproduce,
+    Checkpoint, Frame, Picture, Progress, PseudoTimeCost, Reproduction, Silent, Solution, execute,
+    execute_from, linear_system, pseudo_time, reproduce,
 };
 pub use field::NodalField;
 pub use methods::{METHODS, MethodInfo};

@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use crate::{Error, NodalField};
 pub(crate) use discrete::{Discrete, Exact};
 pub(crate) use estimate::estimate;
-pub use linear::linear_system;
+pub use linear::{PseudoTimeCost, linear_system, pseudo_time};
 pub use picture::Picture;
 pub use reproduce::{Reproduction, reproduce};
 use unsteady::History;

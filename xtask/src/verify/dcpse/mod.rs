@@ -3,6 +3,7 @@
 mod cases;
 mod checks;
 mod operators;
+mod pseudo;
 mod sections;
 
 use meshless_tests::fietier::REFERENCE;
@@ -55,12 +56,23 @@ pub(super) fn run(options: &Options) -> Study {
     if options.case.as_deref().is_none_or(|c| c == "operators") && options.method.is_none() {
         operators::check(&mut claims);
     }
+    let mut stepped = Vec::new();
+    if options.wants("dipole", CONSTRAINED.method) {
+        match pseudo::measure() {
+            Ok(costs) => stepped = costs,
+            Err(error) => runner.failures.push(format!("pseudo-time: {error}")),
+        }
+    }
+    pseudo::check(&stepped, &mut claims);
     checks::dipole(&runner, &mut claims);
     checks::shells(&runner, &mut claims);
     checks::inclusions(&runner, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
-    let sections = sections::sections(&runner);
+    let mut sections = sections::sections(&runner);
+    if let (Some(section), false) = (sections.iter_mut().find(|s| s.case == "dipole"), stepped.is_empty()) {
+        section.figures.push(pseudo::figure(&stepped));
+    }
     Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
 }
 
