@@ -21,7 +21,7 @@ const fn example(name: &'static str, spacing: &'static str, l2: f64) -> Example 
 
 /// Bounds are about one and a half times what was measured: the error that a method of the order that `docs/` promises
 /// has at this spacing.
-const EXAMPLES: [Example; 20] = [
+const EXAMPLES: [Example; 21] = [
     example("ball", "0.16", 9e-3),
     example("charge", "0.05", 1e-5),
     example("chip", "0.1", 1.6e-2),
@@ -29,6 +29,8 @@ const EXAMPLES: [Example; 20] = [
     example("curved", "0.08", 2e-2),
     example("electrode", "0.08", 1.4e-2),
     Example { name: "head", spacing: "0.5", l2: None },
+    // Its points come from a file.
+    example("image", "", 6e-3),
     example("inclusion", "0.08", 1.6e-2),
     Example { name: "inclusions", spacing: "6", l2: None },
     example("l_shape", "0.016 + 0.2*sqrt(x^2 + y^2)", 2.5e-3),
@@ -54,7 +56,8 @@ fn scene(name: &str) -> Scene {
 
 fn solve(name: &str, spacing: &str) -> Report {
     let mut scene = scene(name);
-    Overrides { spacing: Some(spacing), ..Overrides::default() }.apply(&mut scene).expect("a spacing");
+    let spacing = Some(spacing).filter(|s| !s.is_empty());
+    Overrides { spacing, ..Overrides::default() }.apply(&mut scene).expect("a spacing");
     let plan = Plan::new(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
     execute(&scene, &plan, &mut Silent).unwrap_or_else(|error| panic!("{name}: {error}")).report
 }
@@ -138,6 +141,8 @@ const FEATURES: &[&str] = &[
     "difference = [",
     "bounds = {",
     "spacing = 0",
+    "file = \"",
+    "label = ",
     "spacing = \"",
     "\"grid\"",
     "\"jittered\"",

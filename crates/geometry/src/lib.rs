@@ -47,8 +47,8 @@ mod vector;
 
 pub use aabb::Aabb;
 pub use cloud::{
-    BoundaryNode, Cloud, CloudParams, CloudQuality, Layout, Spacing, SpacingFn, Touch, check_size,
-    estimate_nodes, generate, quality,
+    BoundaryNode, Cloud, CloudParams, CloudQuality, GivenCloud, GivenParams, Layout, Spacing, SpacingFn,
+    Touch, around, check_size, estimate_nodes, generate, quality,
 };
 pub use domain::{Domain, FaceId};
 pub use error::GeometryError;

@@ -62,6 +62,10 @@ impl Overrides<'_> {
             scene.method.order = Some(order);
         }
         if let Some(text) = self.spacing {
+            if let Some(file) = &scene.points.file {
+                let help = "leave the option out; a `spacing` beside `file` in the scene says how far apart they are";
+                return Err(file.place.error("the points come from a file", help).into());
+            }
             scene.points.spacing = ExprField::from_command_line("--spacing", text, scene.dimension)?;
         }
         if let Some(tolerance) = self.tolerance {

@@ -3,6 +3,7 @@
 mod estimate;
 mod front;
 mod generate;
+mod given;
 mod lattice;
 mod line;
 mod params;
@@ -12,6 +13,7 @@ mod validate;
 pub(crate) use estimate::too_many;
 pub use estimate::{check_size, estimate_nodes};
 pub use generate::generate;
+pub use given::{GivenCloud, GivenParams, around};
 pub use params::{CloudParams, Layout, Spacing, SpacingFn};
 pub use quality::{CloudQuality, quality};
 

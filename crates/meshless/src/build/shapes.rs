@@ -87,6 +87,11 @@ pub(crate) fn explain_cloud(scene: &Scene, error: GeometryError) -> Error {
 /// The same scene with the spacing multiplied.
 pub(crate) fn with_spacing_times(scene: &Scene, factor: f64) -> Scene {
     let mut coarse = scene.clone();
+    if let Some(file) = &mut coarse.points.file {
+        // The points that are left are as far apart as they are.
+        file.thin *= factor;
+        return coarse;
+    }
     let ExprField { text, expr, .. } = &scene.points.spacing;
     let variables = &["x", "y", "z"][..scene.dimension];
     coarse.points.spacing.expr = match expr.as_constant() {

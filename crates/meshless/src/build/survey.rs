@@ -3,6 +3,7 @@
 use meshless_geometry::check_size;
 
 use super::fields::materials;
+use super::points::file_points;
 use super::shapes::{domain, explain_cloud, regions, spacing};
 use crate::scene::{Scene, ShapeSpec};
 use crate::{Error, MAX_NODES};
@@ -25,6 +26,9 @@ pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
 }
 
 fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
+    if let Some(file) = &scene.points.file {
+        return Ok(file_points::<D>(scene, file)?.points.len() as f64);
+    }
     check_size(&domain::<D>(scene)?, &spacing::<D>(scene), MAX_NODES).map_err(|e| explain_cloud(scene, e))
 }
 
@@ -41,7 +45,15 @@ pub(crate) fn sampled_contrast(scene: &Scene) -> Result<f64, Error> {
 }
 
 fn sampled_contrast_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
-    let (domain, regions, materials) = (domain::<D>(scene)?, regions::<D>(scene)?, materials::<D>(scene));
+    let (domain, materials) = (domain::<D>(scene)?, materials::<D>(scene));
+    if let (Some(file), true) = (&scene.points.file, scene.is_labelled()) {
+        let given = file_points::<D>(scene, file)?;
+        let labels = given.labels.unwrap_or_default();
+        let all = given.points.iter().zip(&labels);
+        let values = all.map(|(x, &label)| materials[label as usize].diffusivity.at(x));
+        return Ok(ratio(values.filter(|eta| *eta > 0.0 && eta.is_finite())));
+    }
+    let regions = regions::<D>(scene)?;
     let (bounds, count) = (domain.bounds(), SAMPLES_PER_AXIS[D - 1]);
     let total = count.pow(D as u32);
     let lengths = bounds.lengths();

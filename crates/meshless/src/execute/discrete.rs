@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use meshless_geometry::{Cloud, CloudParams, Domain, RegionMap, generate};
+use meshless_geometry::{Cloud, Domain, RegionMap};
 use meshless_interfaces::phase_field::{PhaseFieldParams, regions_from_labels};
 use meshless_interfaces::{
     BoundaryData, Condition, InterfaceJump, Material, MethodError, Problem, SlitInterface, Supports,
@@ -10,11 +10,11 @@ use meshless_interfaces::{
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
 
 use super::Progress;
+use crate::Error;
 use crate::build::{self, Boundary};
 use crate::plan::{Plan, Stage};
 use crate::report::Seconds;
 use crate::scene::Scene;
-use crate::{Error, MAX_NODES};
 
 /// Cloud, supports, coefficients and conditions of a scene.
 pub(crate) struct Discrete<const D: usize> {
@@ -33,6 +33,23 @@ pub(crate) struct Discrete<const D: usize> {
     slits: Vec<SlitInterface<D>>,
 }
 
+/// A region that is too thin is a matter of the scene.
+fn explain_phase_field(scene: &Scene, error: MethodError) -> Error {
+    match error {
+        MethodError::LostRegion { region, ref position } => {
+            let spec = &scene.regions[region as usize];
+            let message = format!(
+                "the region \"{}\" is too thin near {position:?} for its interface to be found from labels",
+                spec.name
+            );
+            let help =
+                "a layer must be about six nodes thick: give more points, or the shapes of the regions";
+            spec.place.error(message, help).into()
+        }
+        error => error.into(),
+    }
+}
+
 /// The exact solution at the nodes.
 pub(crate) struct Exact<const D: usize> {
     pub(crate) values: Vec<f64>,
@@ -49,14 +66,7 @@ impl<const D: usize> Discrete<D> {
         progress.stage(Stage::Points);
         let start = Instant::now();
         let domain = build::domain::<D>(scene)?;
-        let mut regions = build::regions::<D>(scene)?;
-        let params = CloudParams {
-            spacing: build::spacing::<D>(scene),
-            layout: build::layout(scene),
-            seed: scene.points.seed,
-            max_nodes: MAX_NODES,
-        };
-        let cloud = generate(&domain, &params).map_err(|e| build::explain_cloud(scene, e))?;
+        let build::Placed { cloud, mut regions, labels: given } = build::place(scene, &domain)?;
         seconds.points = start.elapsed().as_secs_f64();
 
         progress.stage(Stage::Neighbors);
@@ -68,7 +78,7 @@ impl<const D: usize> Discrete<D> {
         let start = Instant::now();
         let labels = if plan.runs(Stage::Regions) {
             progress.stage(Stage::Regions);
-            let labels = regions.labels(&cloud);
+            let labels = given.unwrap_or_else(|| regions.labels(&cloud));
             build::check_regions_are_met(scene, &labels)?;
             build::check_interfaces_touch(scene, &labels, &lists)?;
             labels
@@ -78,7 +88,8 @@ impl<const D: usize> Discrete<D> {
         if plan.runs(Stage::PhaseField) {
             progress.stage(Stage::PhaseField);
             let params = PhaseFieldParams::default();
-            (regions, _) = regions_from_labels(&cloud, &lists, &labels, scene.regions.len(), &params)?;
+            (regions, _) = regions_from_labels(&cloud, &lists, &labels, scene.regions.len(), &params)
+                .map_err(|e| explain_phase_field(scene, e))?;
         }
         let materials = build::materials::<D>(scene);
         let eta = build::nodal_diffusivity(scene, &materials, cloud.points(), &labels)?;

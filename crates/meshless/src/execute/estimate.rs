@@ -29,7 +29,10 @@ pub(crate) fn estimate<const D: usize>(
     solved: &Solved<D>,
 ) -> Result<(Estimate, Option<Vec<f64>>), Error> {
     match plan.method.params.finer(D) {
-        Some(finer) if scene.time.is_none() => against_finer(plan, &finer, solved),
+        // A higher order knows no more of interfaces from labels.
+        Some(finer) if scene.time.is_none() && !plan.runs(Stage::PhaseField) => {
+            against_finer(plan, &finer, solved)
+        }
         _ => Ok((against_coarser(scene, plan, solved)?, None)),
     }
 }
@@ -110,10 +113,14 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
         .iter()
         .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
     let method = &plan.method.params;
-    let order = match (singular, smooth) {
+    // Interfaces from labels are known to a share of the spacing.
+    let order = match (singular || plan.runs(Stage::PhaseField), smooth) {
         (true, _) => 1,
         (_, true) => method.order(),
         (_, false) => method.interface_order(),
     };
-    Ok(Estimate { l2: Some(norms.l2() / (RATIO.powi(order as i32) - 1.0)), why_not: None })
+    // Points from a file can only be thinned as they are.
+    let nodes = [fine, &coarse].map(|solved| solved.discrete.cloud.len() as f64);
+    let ratio = if scene.points.file.is_some() { (nodes[0] / nodes[1]).powf(1.0 / D as f64) } else { RATIO };
+    Ok(Estimate { l2: Some(norms.l2() / (ratio.powi(order as i32) - 1.0)), why_not: None })
 }

@@ -39,6 +39,10 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
         let message = "the method \"particle-difference-extended\" solves steady scenes only";
         return Err(time.place.error(message, "use \"particle-difference\"").into());
     }
+    if scene.is_labelled() && scene.method.options.interfaces == Some(InterfacesName::Shapes) {
+        let message = "the regions have no shapes: points from a file tell where they are";
+        return Err(scene.points.place.error(message, "remove `method.interfaces`").into());
+    }
     let accuracy = AccuracyPlan::new(scene).filter(|_| !slits);
     let mut order = scene.method.order;
     let (name, why) = match (named, accuracy) {
@@ -148,7 +152,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(true, Stage::Neighbors, "");
     decide(scene.regions.len() > 1, Stage::Regions, "there is one region");
     // Not listed among what is skipped: hardly a scene asks for it.
-    if scene.method.options.interfaces == Some(InterfacesName::Labels) {
+    if scene.is_labelled() || scene.method.options.interfaces == Some(InterfacesName::Labels) {
         decide(scene.regions.len() > 1, Stage::PhaseField, "there is one region");
     }
     decide(variable, Stage::Diffusivity, "the diffusivity is one constant");

@@ -1,11 +1,13 @@
 //! `[domain]`, `[points]` and `[[holes]]`.
 
 use std::collections::HashSet;
+use std::path::PathBuf;
 
 use super::accuracy::{AccuracySpec, first_spacing};
 use super::error::SceneError;
 use super::expression::ExprField;
 use super::free_space::FREE_SPACE;
+use super::points_file::PointsFileSpec;
 use super::reader::{Table, Value};
 use super::shapes::{bounds, keys_with_shape, refuse_future_shapes, required_shape};
 use super::spec::{
@@ -58,13 +60,18 @@ pub(super) fn points(
                 spacing: ExprField::constant(spacing, place),
                 layout: LayoutName::Irregular,
                 seed: DEFAULT_SEED,
+                file: None,
                 place: place.clone(),
             }),
             None => Err(root.missing("points", "")),
         };
     };
-    table.allow(&["spacing", "layout", "seed"])?;
+    table.allow(&["spacing", "layout", "seed", "file"])?;
+    if let Some(value) = table.get("file") {
+        return points_of_file(&table, &value, accuracy);
+    }
     Ok(PointsSpec {
+        file: None,
         spacing: match (table.get("spacing"), first()) {
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
             (value, _) => {
@@ -80,6 +87,34 @@ pub(super) fn points(
             None => DEFAULT_SEED,
         },
         place: table.place,
+    })
+}
+
+/// Points from a file; how far apart they are can be left to their number.
+fn points_of_file(
+    table: &Table<'_>,
+    file: &Value<'_>,
+    accuracy: Option<&AccuracySpec>,
+) -> Result<PointsSpec, SceneError> {
+    if let Some(spec) = accuracy {
+        let message = "points from a file cannot be refined until a tolerance is reached";
+        return Err(spec.place.error(message, "remove the section, and judge by the reported estimate"));
+    }
+    for key in ["layout", "seed"] {
+        if let Some(value) = table.get(key) {
+            return Err(value.error(format!("points from a file have no {key}"), "remove the key"));
+        }
+    }
+    let spacing = table.get("spacing").map(|value| value.expression()?.check_positive()).transpose()?;
+    let spaced = spacing.is_some();
+    let place = file.place.clone();
+    let unit = ExprField::constant(1.0, &place);
+    Ok(PointsSpec {
+        spacing: spacing.unwrap_or(unit),
+        layout: LayoutName::Irregular,
+        seed: DEFAULT_SEED,
+        file: Some(PointsFileSpec { path: PathBuf::from(file.text()?), spaced, thin: 1.0, place }),
+        place: table.place.clone(),
     })
 }
 

@@ -89,6 +89,10 @@ pub(super) fn free_space(root: &Table<'_>) -> Result<Option<FreeSpaceSpec>, Scen
             return Err(value.error(format!("the domain is free space, where [{key}] says nothing"), help));
         }
     }
+    if let Some(value) = root.get("points").and_then(|v| v.table().ok()).and_then(|t| t.get("file")) {
+        let help = "give `spacing`; particles that carry a source have a section [particles]";
+        return Err(value.error("in free space points make a regular mesh", help));
+    }
     let method = root.get("method").map(Value::table).transpose()?;
     let method = |key: &str| method.as_ref().and_then(|table| table.get(key));
     let kernel = method("kernel").map(|value| value.one_of(&KERNELS)).transpose()?;

@@ -6,7 +6,7 @@
 //! expressions: every [`ExprField`] keeps its place, so that a NaN met later can be reported with [`Place::error`].
 //!
 //! What a file can do is bounded: its length, the depth of its tables and the size of its expressions are limited,
-//! and it names no other file.
+//! and the only other files that it names are tables of numbers: points, particles.
 
 mod accuracy;
 mod boundaries;
@@ -16,6 +16,7 @@ mod expression;
 mod free_space;
 mod method;
 mod options;
+mod points_file;
 mod reader;
 mod regions;
 mod root;
@@ -38,6 +39,8 @@ pub use method::MethodNameError;
 pub use options::{
     GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
 };
+pub(crate) use points_file::FilePoints;
+pub use points_file::PointsFileSpec;
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
@@ -131,6 +134,11 @@ impl Scene {
         let mut scene = self.clone();
         scene.method.order = order;
         scene
+    }
+
+    /// Whether the regions have no shapes, but points from a file that say in which of them they are.
+    pub fn is_labelled(&self) -> bool {
+        self.points.file.is_some() && self.regions.len() > 1 && self.regions[0].geometry.is_none()
     }
 
     /// Names of the faces that a boundary condition can be given for, `all` excepted.

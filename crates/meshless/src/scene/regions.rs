@@ -19,12 +19,28 @@ pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
         return Err(value.error(message, HELP));
     }
     let last = tables.len() - 1;
+    let from_file = root.get("points").and_then(|v| v.table().ok()).is_some_and(|t| t.has("file"));
+    let any_shape = tables.iter().any(|t| SHAPE_KEYS.into_iter().any(|key| t.has(key)));
+    let labelled = from_file && last > 0 && !any_shape;
+    let mut labels = HashSet::new();
     let mut regions = Vec::with_capacity(tables.len());
     let mut names = HashSet::new();
     for (index, table) in tables.into_iter().enumerate() {
         let shape = SHAPE_KEYS.into_iter().find_map(|key| table.get(key));
         let spec = region(&table)?;
-        check_geometry(&spec, index == last, shape)?;
+        if labelled {
+            let label = spec.label.as_ref().unwrap_or(&spec.name);
+            if !labels.insert(label.clone()) {
+                let message = format!("there is already a region with the label \"{label}\"");
+                return Err(spec.place.error(message, "labels must differ"));
+            }
+        } else {
+            if let Some(value) = table.get("label") {
+                let help = "give [points] a `file` with a label in each line, and no region a shape";
+                return Err(value.error("labels are for regions that points from a file tell", help));
+            }
+            check_geometry(&spec, index == last, shape)?;
+        }
         if !names.insert(spec.name.clone()) {
             let message = format!("there is already a region \"{}\"", spec.name);
             return Err(table.require("name")?.error(message, "names must differ"));
@@ -36,15 +52,25 @@ pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
 
 fn region(table: &Table<'_>) -> Result<RegionSpec, SceneError> {
     refuse_future_shapes(table)?;
-    table.allow(&keys_with_shape(&["name", "diffusivity", "source", "exact"]))?;
+    table.allow(&keys_with_shape(&["name", "label", "diffusivity", "source", "exact"]))?;
     Ok(RegionSpec {
         name: table.require("name")?.name()?,
+        label: table.get("label").map(|value| label(&value)).transpose()?,
         geometry: optional_shape(table)?,
         diffusivity: table.require("diffusivity")?.data_expression()?.check_positive()?,
         source: table.get("source").map(|value| value.data_expression()).transpose()?,
         exact: table.get("exact").map(|value| value.data_expression()).transpose()?,
         place: table.place.clone(),
     })
+}
+
+/// A number or a text.
+fn label(value: &Value<'_>) -> Result<String, SceneError> {
+    match value.as_number() {
+        Some(number) => Ok(number?.to_string()),
+        None if value.as_text().is_some() => value.name(),
+        None => Err(value.expected("a number or a text", "")),
+    }
 }
 
 /// The last region is the background, and only it.

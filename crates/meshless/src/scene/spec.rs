@@ -2,6 +2,7 @@
 
 use super::expression::ExprField;
 use super::options::MethodOptions;
+use super::points_file::PointsFileSpec;
 use super::source::Place;
 
 /// Faces of a box, two an axis.
@@ -100,12 +101,14 @@ impl ShapeSpec {
 /// How nodes are placed.
 #[derive(Debug, Clone)]
 pub struct PointsSpec {
-    /// Distance of neighbouring nodes; positive where it is constant.
+    /// Distance of neighbouring nodes; positive where it is constant. 1 for points from a file that leave it open.
     pub spacing: ExprField,
     /// How regular the cloud is; irregular, if the scene does not say.
     pub layout: LayoutName,
     /// Seed of the random numbers; 1, if the scene does not say.
     pub seed: u64,
+    /// The file that the points come from, if they are not generated.
+    pub file: Option<PointsFileSpec>,
     /// The table in the file.
     pub place: Place,
 }
@@ -139,7 +142,9 @@ pub struct HoleSpec {
 pub struct RegionSpec {
     /// Name, used in the report.
     pub name: String,
-    /// Where it is; `None` for the background.
+    /// What points from a file call it, if not by its name.
+    pub label: Option<String>,
+    /// Where it is; `None` for the background, and for all where points from a file tell.
     pub geometry: Option<ShapeSpec>,
     /// The coefficient eta; positive where it is constant.
     pub diffusivity: ExprField,

@@ -83,7 +83,9 @@ impl Checkpoint {
 /// What tells one run from another: the text of the scene, and what may have been put in its place.
 fn digest(scene: &Scene, plan: &Plan) -> String {
     let place = &scene.points.place;
-    let parts = format!("{}\n{}\n{:?}", place.source_text(), scene.points.spacing.text, plan.method);
+    // A file of points was read a moment ago.
+    let points = scene.points.file.as_ref().and_then(|file| file.text().ok()).unwrap_or_default();
+    let parts = format!("{}\n{}\n{:?}{points}", place.source_text(), scene.points.spacing.text, plan.method);
     // FNV-1a, 64 bit.
     let hash = parts
         .bytes()

@@ -2,6 +2,7 @@
 
 mod mangled;
 mod points;
+mod points_file;
 mod slits;
 mod valid;
 mod wrong;

@@ -1,0 +1,54 @@
+//! The cloud of a scene: generated, or round the points of a file.
+
+use meshless_geometry::{Cloud, CloudParams, Domain, GivenParams, RegionMap, around, generate};
+
+use super::shapes::{explain_cloud, layout, regions, spacing};
+use crate::scene::{FilePoints, PointsFileSpec, Scene};
+use crate::{Error, MAX_NODES};
+
+/// How far outside of the domain a point may lie, relative to the domain's size: rounding in the file.
+const OUTSIDE: f64 = 1e-6;
+
+/// Nodes, and what tells their regions.
+pub(crate) struct Placed<const D: usize> {
+    pub(crate) cloud: Cloud<D>,
+    /// The shapes of the regions; where the file tells the regions, there is one region only.
+    pub(crate) regions: RegionMap<D>,
+    /// The region of every node, where the file tells; a node on the boundary has that of the nearest point.
+    pub(crate) labels: Option<Vec<u16>>,
+}
+
+/// The points of the file, where the scene has one.
+pub(crate) fn file_points<const D: usize>(
+    scene: &Scene,
+    file: &PointsFileSpec,
+) -> Result<FilePoints<D>, Error> {
+    Ok(file.read::<D>(scene.is_labelled().then_some(&scene.regions))?)
+}
+
+/// The cloud and the regions of a scene.
+pub(crate) fn place<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result<Placed<D>, Error> {
+    let regions = if scene.is_labelled() { RegionMap::new(vec![None])? } else { regions(scene)? };
+    let Some(file) = &scene.points.file else {
+        let params = CloudParams {
+            spacing: spacing(scene),
+            layout: layout(scene),
+            seed: scene.points.seed,
+            max_nodes: MAX_NODES,
+        };
+        let cloud = generate(domain, &params).map_err(|e| explain_cloud(scene, e))?;
+        return Ok(Placed { cloud, regions, labels: None });
+    };
+    let given = file_points::<D>(scene, file)?;
+    let reach = OUTSIDE * domain.bounds().diameter();
+    if let Some(i) = given.points.iter().position(|x| !domain.contains(x, reach)) {
+        let message = format!("the point {:?} lies outside of the domain", given.points[i]);
+        return Err(given.error(i, message, "remove it, or enlarge the domain").into());
+    }
+    let params =
+        GivenParams { spacing: file.spaced.then(|| spacing(scene)), thin: file.thin, max_nodes: MAX_NODES };
+    let made = around(domain, &given.points, &params)
+        .map_err(|e| file.place.error(e.to_string(), "a `spacing` says how far apart the points are"))?;
+    let labels = given.labels.map(|all| made.origin.iter().map(|&o| all[o as usize]).collect());
+    Ok(Placed { cloud: made.cloud, regions, labels })
+}
