@@ -68,6 +68,10 @@ impl Overrides<'_> {
             }
             scene.points.spacing = ExprField::from_command_line("--spacing", text, scene.dimension)?;
         }
+        if let (Some(_), Some(file)) = (self.tolerance, &scene.points.file) {
+            let help = "leave `--tolerance` out; the report has an estimate of the error";
+            return Err(file.place.error("points from a file cannot be refined", help).into());
+        }
         if let Some(tolerance) = self.tolerance {
             let spec = AccuracySpec::from_command_line(tolerance, scene.dimension, scene.accuracy.as_ref())?;
             scene.accuracy = Some(spec);

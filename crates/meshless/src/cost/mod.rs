@@ -85,6 +85,10 @@ pub struct CostReport {
 /// Those of a scene that is wrong, or that none of the methods can solve. What a method cannot do, or a cloud too coarse
 /// for it, is said in its run.
 pub fn cost(scene: &Scene, params: &CostParams, each: &mut dyn FnMut(&CostRun)) -> Result<CostReport, Error> {
+    if let Some(file) = &scene.points.file {
+        let help = "the report of `meshless solve` has an estimate of the error";
+        return Err(file.place.error("points from a file have no ladder of spacings", help).into());
+    }
     let mut report = match (scene.free_space.is_some(), scene.dimension) {
         (true, _) => ladder::free_space(scene, params, each)?,
         (_, 1) => ladder::bounded::<1>(scene, params, each)?,

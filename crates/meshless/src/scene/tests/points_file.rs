@@ -87,6 +87,20 @@ fn labelled_pixels_are_solved_and_their_error_is_estimated() {
 }
 
 #[test]
+fn finer_points_than_the_file_has_are_refused() {
+    check_all(
+        SCAN,
+        &[wrong(
+            "[[boundaries]]",
+            "[accuracy]\ntolerance = «0.01»\n\n[[boundaries]]",
+            "accuracy.tolerance",
+            "cannot be refined",
+            "",
+        )],
+    );
+}
+
+#[test]
 fn what_is_wrong_in_the_file_is_said_with_its_line() {
     let good = pixels();
     let said = |csv: &str| solve(SCAN, csv).expect_err("wrong").to_string();
