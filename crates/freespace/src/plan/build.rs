@@ -105,12 +105,13 @@ impl Layout {
     }
 
     /// The engine with this Ĝ.
-    pub(super) fn engine<T: Real>(&self, octant: &Octant, estimate: Option<(usize, f64)>) -> Engine<T> {
+    pub(super) fn engine<T: Real>(&self, octant: Octant, estimate: Option<(usize, f64)>) -> Engine<T> {
         let all = self.lengths().iter().map(|&n| n as f64).product::<f64>();
         Engine {
             axes: std::array::from_fn(|a| Axis::new(self.points[a], &self.lines[a], self.spacing[a])),
             real: RealTransforms::new(self.lines[0].len),
-            kernel: octant.values.iter().map(|g| T::rounded(g / all)).collect(),
+            // In place where the type is the same.
+            kernel: octant.values.into_iter().map(|g| T::rounded(g / all)).collect(),
             estimate: estimate
                 .map(|(order, sigma)| Estimate::new(order, sigma, self.lengths(), self.spacing, all)),
         }
@@ -174,5 +175,5 @@ pub(super) fn engine<const D: usize, T: Real>(
         (None, Some((order, sigma))) => layout.radial(&Gaussian::<D>::new(order, sigma)?),
         (None, None) => layout.radial(&Spectral::<D>::new(coarsest(mesh) / std::f64::consts::PI)?),
     };
-    Ok(layout.engine(&octant, gaussian))
+    Ok(layout.engine(octant, gaussian))
 }

@@ -124,7 +124,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let layout = Layout::with_boundaries(mesh, [Boundary::OPEN; D])?;
         memory::check::<T>(layout.points, layout.lengths(), None, None)?;
-        Ok(Self { mesh: *mesh, engine: layout.engine(&layout.radial(kernel), None), closed: None })
+        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel), None), closed: None })
     }
 
     /// The same without padding, for a function that vanishes beyond some distance: results are right at the points that
@@ -136,7 +136,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let layout = Layout::compact(mesh);
         memory::check::<T>(layout.points, layout.lengths(), None, None)?;
-        Ok(Self { mesh: *mesh, engine: layout.engine(&layout.radial(kernel), None), closed: None })
+        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel), None), closed: None })
     }
 
     /// The mesh.
