@@ -28,6 +28,7 @@ const EXAMPLES: [Example; 21] = [
     example("crack", "0.08", 8e-3),
     example("curved", "0.08", 2e-2),
     example("electrode", "0.08", 1.4e-2),
+    Example { name: "gear", spacing: "0.004", l2: None },
     Example { name: "head", spacing: "0.5", l2: None },
     // Its points come from a file.
     example("image", "", 6e-3),

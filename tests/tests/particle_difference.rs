@@ -22,6 +22,23 @@ fn gallery() -> Vec<String> {
 
 /// `div(eta grad u) + f` in every region by symbolic derivatives, at points that are in no special place.
 #[test]
+fn a_slit_that_crosses_the_rim_of_an_inclusion_is_refused_with_the_place() {
+    let text = "title = \"crossed\"\ndimension = 2\n[domain]\nbox = { min = [-1, -1], max = [1, 1] }\n\
+                [points]\nspacing = 0.1\n[[slits]]\nname = \"crack\"\npolyline = [[-0.2, 0.03], [0.8, 0.03]]\nflux = 0\n\
+                [[regions]]\nname = \"inclusion\"\nsphere = { center = [0, 0], radius = 0.4 }\ndiffusivity = 10\n\
+                [[regions]]\nname = \"matrix\"\ndiffusivity = 1\n[[boundaries]]\nface = \"all\"\ndirichlet = \"x\"\n";
+    let refused = |text: &str| {
+        let scene = meshless::scene::Scene::parse(text, "crossed.toml").unwrap();
+        let plan = meshless::plan::Plan::new(&scene).unwrap();
+        meshless::execute(&scene, &plan, &mut meshless::Silent).err().map(|error| error.to_string())
+    };
+    let message = refused(text).expect("a refusal");
+    assert!(message.contains("near both a slit and an interface"), "{message}");
+    // With one diffusivity nothing jumps at the rim, and the crack may cross it.
+    assert_eq!(refused(&text.replace("diffusivity = 10", "diffusivity = 1")), None);
+}
+
+#[test]
 fn the_solutions_of_the_gallery_satisfy_their_equations() {
     for text in gallery() {
         let scene = Scene::parse(&text, "gallery.toml").expect("a scene of the gallery");

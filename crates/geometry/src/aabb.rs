@@ -30,6 +30,21 @@ impl<const D: usize> Aabb<D> {
         Ok(Self { min, max })
     }
 
+    /// The smallest box that holds some points.
+    ///
+    /// # Errors
+    /// As [`Aabb::new`]: for no points, and for points in a plane across an axis.
+    pub(crate) fn of_points(points: &[[f64; D]]) -> Result<Self, GeometryError> {
+        let (mut min, mut max) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+        for x in points {
+            for axis in 0..D {
+                min[axis] = min[axis].min(x[axis]);
+                max[axis] = max[axis].max(x[axis]);
+            }
+        }
+        Self::new(min, max)
+    }
+
     /// Edge lengths.
     pub fn lengths(&self) -> [f64; D] {
         std::array::from_fn(|i| self.max[i] - self.min[i])

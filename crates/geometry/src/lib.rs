@@ -43,6 +43,7 @@ mod region;
 mod shape;
 mod slit;
 mod spatial_hash;
+mod surface;
 mod vector;
 
 pub use aabb::Aabb;
@@ -58,3 +59,4 @@ pub use projection::{Projection, ProjectionError};
 pub use region::{Component, RegionGraph, RegionMap, RegionShape, TIE};
 pub use shape::{Ball, Cylinder, HalfSpace, Polygon, Shape};
 pub use slit::{Sight, Slit, SlitFoot, SlitPoint};
+pub use surface::{DEFAULT_CREASE, MAX_STL_TRIANGLES, SurfaceParams, TriangleSurface, read_stl};

@@ -1,6 +1,7 @@
-//! Corners: where as many patches meet as there are dimensions, and the vertices of polygons.
+//! Corners: where as many patches meet as there are dimensions, the vertices of polygons, and those of surfaces of triangles.
 
 use super::manifold::onto;
+use super::patch::Patch;
 use super::sampler::{BoundaryCell, Sampler, for_each_subset};
 use crate::error::GeometryError;
 use crate::vector::dot;
@@ -41,21 +42,7 @@ pub(super) fn sample<const D: usize>(
 
 fn vertices<const D: usize>(sampler: &mut Sampler<'_, D>) -> Result<(), GeometryError> {
     for k in 0..sampler.patches.len() {
-        let Some(polygon) = sampler.patches[k].polygon() else { continue };
-        let count = polygon.vertices().len();
-        // The cosine of the turn at each vertex; sharpest first, in the polygon's order among equals.
-        let mut order: Vec<(f64, usize)> = (0..count)
-            .map(|i| (dot(&polygon.edge_normal((i + count - 1) % count), &polygon.edge_normal(i)), i))
-            .collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let ordered: Vec<[f64; D]> = order
-            .iter()
-            .map(|&(_, i)| {
-                let v = polygon.vertices()[i];
-                std::array::from_fn(|axis| v[axis])
-            })
-            .collect();
-        for x in ordered {
+        for x in ordered_vertices(&sampler.patches[k]) {
             if !sampler.on_all(&[k], &x) {
                 continue;
             }
@@ -66,4 +53,20 @@ fn vertices<const D: usize>(sampler: &mut Sampler<'_, D>) -> Result<(), Geometry
         }
     }
     Ok(())
+}
+
+/// Vertices of a polygon, sharpest first, in the polygon's order among equals; corners of a surface of triangles.
+fn ordered_vertices<const D: usize>(patch: &Patch<'_, D>) -> Vec<[f64; D]> {
+    if let Some(surface) = patch.triangles() {
+        return surface.corners().map(|v| std::array::from_fn(|axis| v[axis])).collect();
+    }
+    let Some(polygon) = patch.polygon() else { return Vec::new() };
+    let count = polygon.vertices().len();
+    // The cosine of the turn at each vertex.
+    let mut order: Vec<(f64, usize)> = (0..count)
+        .map(|i| (dot(&polygon.edge_normal((i + count - 1) % count), &polygon.edge_normal(i)), i))
+        .collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let vertex = |i: usize| std::array::from_fn(|axis| polygon.vertices()[i][axis]);
+    order.into_iter().map(|(_, i)| vertex(i)).collect()
 }

@@ -33,7 +33,7 @@ pub(super) fn sample<const D: usize>(
     lattice: bool,
 ) -> Result<(), GeometryError> {
     for k in 0..sampler.patches.len() {
-        if let Some(polyline) = polygon_line(sampler, k)? {
+        for polyline in own_lines(sampler, k) {
             arcs::place(sampler, &[k], polyline)?;
         }
     }
@@ -84,31 +84,46 @@ pub(super) fn sample_line<const D: usize>(sampler: &mut Sampler<'_, D>) -> Resul
     arcs::place(sampler, &[], Polyline { points, closed: false })
 }
 
-/// The outline of a polygon, in steps, with its vertices.
-fn polygon_line<const D: usize>(
-    sampler: &Sampler<'_, D>,
-    k: usize,
-) -> Result<Option<Polyline<D>>, GeometryError> {
-    let Some(polygon) = sampler.patches[k].polygon() else { return Ok(None) };
+/// The outline of a polygon, or the creases of a surface of triangles, in steps and with their vertices.
+fn own_lines<const D: usize>(sampler: &Sampler<'_, D>, k: usize) -> Vec<Polyline<D>> {
+    let patch = &sampler.patches[k];
+    let mut lines: Vec<(Vec<[f64; D]>, bool)> = Vec::new();
+    if let Some(polygon) = patch.polygon() {
+        lines.push((polygon.vertices().iter().map(|v| std::array::from_fn(|i| v[i])).collect(), true));
+    }
+    if let Some(surface) = patch.triangles() {
+        let creases = surface.crease_lines();
+        lines.extend(creases.map(|(vertices, closed)| {
+            (vertices.iter().map(|v| std::array::from_fn(|i| v[i])).collect(), closed)
+        }));
+    }
+    lines.into_iter().map(|(vertices, closed)| in_steps(sampler, &vertices, closed)).collect()
+}
+
+/// A polyline with further points between its vertices.
+fn in_steps<const D: usize>(sampler: &Sampler<'_, D>, vertices: &[[f64; D]], closed: bool) -> Polyline<D> {
     let mut points = Vec::new();
-    let vertices = polygon.vertices();
     let fallback = sampler.domain.bounds().diameter() / 64.0;
-    for (i, &a) in vertices.iter().enumerate() {
-        let b = vertices[(i + 1) % vertices.len()];
-        let length = distance(&a, &b);
-        let along = |t: f64| -> [f64; D] { std::array::from_fn(|axis| a[axis] + t * (b[axis] - a[axis])) };
+    let segments = if closed { vertices.len() } else { vertices.len() - 1 };
+    for (i, a) in vertices.iter().enumerate().take(segments) {
+        let b = &vertices[(i + 1) % vertices.len()];
+        let (length, edge) = (distance(a, b), sub(b, a));
         let mut t = 0.0;
         while t < 1.0 {
-            points.push(along(t));
+            let x = axpy(a, t, &edge);
+            points.push(x);
             // Parts of the outline may lie outside of the domain, where the spacing need not be defined.
-            let h = sampler.spacing.at(&along(t)).unwrap_or(fallback);
+            let h = sampler.spacing.at(&x).unwrap_or(fallback);
             t += (STEP * h / length).max(1e-6);
             if 1.0 - t < 0.25 * STEP * h / length {
                 break;
             }
         }
     }
-    Ok(Some(Polyline { points, closed: true }))
+    if !closed {
+        points.extend(vertices.last());
+    }
+    Polyline { points, closed }
 }
 
 fn trace<const D: usize>(

@@ -1,12 +1,13 @@
 use crate::domain::{Domain, FaceId};
-use crate::shape::{HalfSpace, Polygon, Shape};
+use crate::shape::{HalfSpace, Polygon, Shape, spatial};
+use crate::surface::TriangleSurface;
 use crate::vector::{axis_vector, distance, dot, norm, normalized, scale};
 
 /// Two normals at a node that are nearer to each other than this (sine of the angle) are one.
 const SAME_NORMAL: f64 = 1e-6;
 
-/// A smooth piece of the boundary: the planes of boxes, mantles and caps of cylinders, spheres, level sets. Polygons,
-/// piecewise smooth, are a patch too; their corners are treated where curves are divided.
+/// A smooth piece of the boundary: the planes of boxes, mantles and caps of cylinders, spheres, level sets. Polygons
+/// and surfaces of triangles, piecewise smooth, are a patch too; their corners and creases are treated where curves are divided.
 pub(crate) struct Patch<'a, const D: usize> {
     pub(crate) face: FaceId,
     /// Whether it is a plane of the domain's outer box.
@@ -34,6 +35,18 @@ impl<const D: usize> Patch<'_, D> {
         }
     }
 
+    pub(crate) fn triangles(&self) -> Option<&TriangleSurface> {
+        match &self.surface {
+            Shape::Surface(s) => Some(s),
+            _ => None,
+        }
+    }
+
+    /// Whether the patch has corners and edges of its own.
+    pub(crate) fn is_piecewise(&self) -> bool {
+        matches!(self.surface, Shape::Polygon(_) | Shape::Surface(_))
+    }
+
     /// For a plane across an axis: the axis and the coordinate.
     pub(crate) fn axis_plane(&self) -> Option<(usize, f64)> {
         let Shape::HalfSpace(h) = &self.surface else { return None };
@@ -52,9 +65,9 @@ impl<const D: usize> Patch<'_, D> {
             && self.parents.iter().all(|parent| shape_distance(parent, x) <= tolerance)
     }
 
-    /// Outward unit normal; between the two at the corner of a polygon.
+    /// Outward unit normal; between them at corners and creases.
     pub(crate) fn mean_normal(&self, x: &[f64; D], tolerance: f64) -> Option<[f64; D]> {
-        if self.polygon().is_none() {
+        if !self.is_piecewise() {
             return normalized(&self.gradient(x)).map(|n| scale(self.sign, &n));
         }
         let mut found = Vec::new();
@@ -62,7 +75,8 @@ impl<const D: usize> Patch<'_, D> {
         normalized(&found.iter().fold([0.0; D], |sum, n| crate::vector::axpy(&sum, 1.0, n)))
     }
 
-    /// Adds the outward normals of the patch at one of its points: two at the corner of a polygon.
+    /// Adds the outward normals of the patch at one of its points: several at corners and
+    /// creases.
     pub(crate) fn normals(&self, x: &[f64; D], tolerance: f64, found: &mut Vec<[f64; D]>) {
         let mut add = |n: [f64; D]| {
             let n = scale(self.sign, &n);
@@ -82,6 +96,8 @@ impl<const D: usize> Patch<'_, D> {
                 let n = p.nearest(&at).edge_normal;
                 add(std::array::from_fn(|k| n[k]));
             }
+        } else if let Some(s) = self.triangles() {
+            s.normals_at(&spatial(x), tolerance, |n| add(std::array::from_fn(|k| n[k])));
         } else if let Some(n) = normalized(&self.gradient(x)) {
             add(n);
         }

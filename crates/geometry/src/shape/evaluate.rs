@@ -1,17 +1,19 @@
 //! Level and gradient of a shape.
 
 use super::{Cylinder, Polygon, Shape};
+use crate::surface::TriangleSurface;
 use crate::vector::{axpy, distance, norm, normalized, scale, sub};
 
 impl<const D: usize> Shape<D> {
     /// The level at `x`: negative inside, zero on the surface. The signed distance for boxes, balls, cylinders,
-    /// polygons and half-spaces.
+    /// polygons, surfaces of triangles and half-spaces.
     pub fn level(&self, x: &[f64; D]) -> f64 {
         match self {
             Self::Box(b) => b.signed_distance(x),
             Self::Ball(b) => distance(x, b.center()) - b.radius(),
             Self::Cylinder(c) => cylinder_level(c, x),
             Self::Polygon(p) => p.nearest(&planar(x)).distance,
+            Self::Surface(s) => s.nearest(&spatial(x)).distance,
             Self::HalfSpace(h) => h.signed_distance(x),
             Self::LevelSet(f) => f.value(x),
             Self::Union(parts) => parts.iter().map(|s| s.level(x)).fold(f64::INFINITY, minimum),
@@ -29,6 +31,7 @@ impl<const D: usize> Shape<D> {
             }
             Self::Cylinder(c) => cylinder_gradient(c, x),
             Self::Polygon(p) => polygon_gradient(p, x),
+            Self::Surface(s) => surface_gradient(s, x),
             Self::HalfSpace(h) => *h.normal(),
             Self::LevelSet(f) => f.gradient(x),
             Self::Union(_) | Self::Intersection(_) | Self::Difference(..) => {
@@ -80,6 +83,11 @@ pub(super) fn planar<const D: usize>(x: &[f64; D]) -> [f64; 2] {
     [x[0], x[1]]
 }
 
+/// The point in three dimensions.
+pub(crate) fn spatial<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
 fn cylinder_level<const D: usize>(c: &Cylinder<D>, x: &[f64; D]) -> f64 {
     let (mantle, cap) = c.parts(&c.frame(x));
     if mantle > 0.0 && cap > 0.0 { norm(&[mantle, cap]) } else { mantle.max(cap) }
@@ -103,6 +111,17 @@ fn polygon_gradient<const D: usize>(p: &Polygon, x: &[f64; D]) -> [f64; D] {
     // On the polygon itself, to rounding, the direction away from it is noise.
     let on_edge = nearest.distance.abs() <= 1e3 * f64::EPSILON * (at[0].abs() + at[1].abs());
     let g = if on_edge { nearest.edge_normal } else { away.unwrap_or(nearest.edge_normal) };
+    std::array::from_fn(|i| g[i])
+}
+
+fn surface_gradient<const D: usize>(s: &TriangleSurface, x: &[f64; D]) -> [f64; D] {
+    let at = spatial(x);
+    let nearest = s.nearest(&at);
+    let away = normalized(&sub(&at, &nearest.point)).map(|d| scale(nearest.distance.signum(), &d));
+    // On the surface itself, to rounding, the direction away from it is noise.
+    let on_surface =
+        nearest.distance.abs() <= nearest.reach.max(1e3 * f64::EPSILON * crate::vector::max_abs(&at));
+    let g = if on_surface { nearest.normal } else { away.unwrap_or(nearest.normal) };
     std::array::from_fn(|i| g[i])
 }
 

@@ -8,12 +8,14 @@ mod project;
 use std::fmt;
 use std::sync::Arc;
 
+pub(crate) use evaluate::spatial;
 pub use polygon::Polygon;
 pub use primitives::{Ball, Cylinder, HalfSpace};
 
 use crate::aabb::Aabb;
 use crate::error::GeometryError;
 use crate::level_set::LevelSet;
+use crate::surface::TriangleSurface;
 use crate::vector::axpy;
 
 /// A set of points, bounded by a surface.
@@ -30,6 +32,8 @@ pub enum Shape<const D: usize> {
     Cylinder(Cylinder<D>),
     /// A simple closed polygon; 2-D only.
     Polygon(Arc<Polygon>),
+    /// The inside of a closed surface of triangles; 3-D only.
+    Surface(Arc<TriangleSurface>),
     /// Everything behind a plane.
     HalfSpace(HalfSpace<D>),
     /// Where a function is negative.
@@ -69,6 +73,17 @@ impl<const D: usize> Shape<D> {
             return Err(GeometryError::invalid("polygon", format!("it needs 2 dimensions, not {D}")));
         }
         Polygon::new(vertices.iter().map(|v| [v[0], v[1]]).collect()).map(|p| Self::Polygon(Arc::new(p)))
+    }
+
+    /// The inside of a closed surface of triangles in 3-D.
+    ///
+    /// # Errors
+    /// [`GeometryError::InvalidShape`] in other dimensions.
+    pub fn surface(surface: Arc<TriangleSurface>) -> Result<Self, GeometryError> {
+        if D != 3 {
+            return Err(GeometryError::invalid("surface", format!("it needs 3 dimensions, not {D}")));
+        }
+        Ok(Self::Surface(surface))
     }
 
     /// A half-space; see [`HalfSpace::new`] for the errors.
@@ -153,6 +168,10 @@ impl<const D: usize> Shape<D> {
                 });
                 Some(Aabb { min: axpy(c.center(), -1.0, &r), max: axpy(c.center(), 1.0, &r) })
             }
+            Self::Surface(s) => {
+                let Aabb { min, max } = s.bounds();
+                Some(Aabb { min: std::array::from_fn(|i| min[i]), max: std::array::from_fn(|i| max[i]) })
+            }
             Self::Polygon(p) => {
                 let corner = |pick: fn(f64, f64) -> f64| -> [f64; D] {
                     std::array::from_fn(|i| p.vertices().iter().map(|v| v[i]).reduce(pick).unwrap_or(0.0))
@@ -183,6 +202,7 @@ impl<const D: usize> fmt::Debug for Shape<D> {
             Self::Ball(b) => b.fmt(f),
             Self::Cylinder(c) => c.fmt(f),
             Self::Polygon(p) => p.fmt(f),
+            Self::Surface(s) => write!(f, "Surface({} triangles)", s.triangles().len()),
             Self::HalfSpace(h) => h.fmt(f),
             Self::LevelSet(_) => f.write_str("LevelSet"),
             Self::Union(parts) => f.debug_tuple("Union").field(parts).finish(),

@@ -1,10 +1,11 @@
 //! The foot of a point on a shape's surface: in closed form for primitives, by iteration for level sets.
 
-use super::evaluate::planar;
+use super::evaluate::{planar, spatial};
 use super::{Cylinder, Polygon, Shape};
 use crate::aabb::Aabb;
 use crate::newton;
 use crate::projection::{Projection, ProjectionError};
+use crate::surface::TriangleSurface;
 use crate::vector::{axis_vector, axpy, distance, is_finite, max_abs, normalized, scale, sub};
 
 /// How far from zero, as a length relative to the coordinates and to the reach, the level of a union, intersection or
@@ -35,6 +36,7 @@ impl<const D: usize> Shape<D> {
             }
             Self::Cylinder(c) => project_cylinder(c, x),
             Self::Polygon(p) => project_polygon(p, x),
+            Self::Surface(s) => project_surface(s, x),
             Self::HalfSpace(h) => {
                 let distance = h.signed_distance(x);
                 Projection { point: axpy(x, -distance, h.normal()), normal: *h.normal(), distance }
@@ -113,4 +115,14 @@ fn project_polygon<const D: usize>(p: &Polygon, x: &[f64; D]) -> Projection<D> {
     let away = normalized(&sub(x, &point)).map_or(edge, |d| scale(nearest.distance.signum(), &d));
     let resolved = distance(x, &point) > 1e-6 * (max_abs(x) + max_abs(&point));
     Projection { point, normal: if resolved { away } else { edge }, distance: nearest.distance }
+}
+
+fn project_surface<const D: usize>(s: &TriangleSurface, x: &[f64; D]) -> Projection<D> {
+    let nearest = s.nearest(&spatial(x));
+    let point: [f64; D] = std::array::from_fn(|i| nearest.point[i]);
+    let normal: [f64; D] = std::array::from_fn(|i| nearest.normal[i]);
+    let resolved = distance(x, &point) > 1e-6 * (max_abs(x) + max_abs(&point));
+    let away = normalized(&sub(x, &point)).filter(|_| resolved && !s.is_smooth());
+    let normal = away.map_or(normal, |d| scale(nearest.distance.signum(), &d));
+    Projection { point, normal, distance: nearest.distance }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use meshless_expr::Expr;
 use meshless_geometry::{Aabb, Domain, GeometryError, Layout, LevelSet, RegionMap, Shape, Spacing};
 
+use super::surfaces::surface;
 use crate::Error;
 use crate::scene::{BoundsSpec, DomainSpec, ExprField, LayoutName, Place, Scene, ShapeSpec};
 
@@ -28,10 +29,10 @@ impl<const D: usize> LevelSet<D> for ExprLevelSet<D> {
 pub(crate) fn domain<const D: usize>(scene: &Scene) -> Result<Domain<D>, Error> {
     let DomainSpec { shape: spec, bounds, place } = &scene.domain;
     let bounds = bounds.as_ref().map(aabb).transpose().map_err(|e| located(place, e))?;
-    let outer = shape::<D>(spec).map_err(|e| located(place, e))?;
+    let outer = shape::<D>(spec, place)?;
     let mut domain = Domain::from_shape(outer, bounds).map_err(|e| located(place, e))?;
     for hole in &scene.holes {
-        let cut = shape::<D>(&hole.shape).map_err(|e| located(&hole.place, e))?;
+        let cut = shape::<D>(&hole.shape, &hole.place)?;
         domain = domain.with_hole(&hole.name, cut).map_err(|e| located(&hole.place, e))?;
     }
     Ok(domain)
@@ -42,7 +43,7 @@ pub(crate) fn regions<const D: usize>(scene: &Scene) -> Result<RegionMap<D>, Err
     let shapes = scene
         .regions
         .iter()
-        .map(|r| r.geometry.as_ref().map(shape::<D>).transpose().map_err(|e| located(&r.place, e)))
+        .map(|r| r.geometry.as_ref().map(|s| shape::<D>(s, &r.place)).transpose())
         .collect::<Result<Vec<_>, _>>()?;
     RegionMap::new(shapes).map_err(|e| located(&scene.regions[0].place, e))
 }
@@ -115,15 +116,17 @@ fn aabb<const D: usize>(spec: &BoundsSpec) -> Result<Aabb<D>, GeometryError> {
     Aabb::new(vector(&spec.min), vector(&spec.max))
 }
 
-fn shape<const D: usize>(spec: &ShapeSpec) -> Result<Shape<D>, GeometryError> {
-    let all = |parts: &[ShapeSpec]| parts.iter().map(shape::<D>).collect::<Result<Vec<_>, _>>();
-    match spec {
+/// A shape of the table at `place`.
+fn shape<const D: usize>(spec: &ShapeSpec, place: &Place) -> Result<Shape<D>, Error> {
+    let all = |parts: &[ShapeSpec]| parts.iter().map(|s| shape::<D>(s, place)).collect::<Result<Vec<_>, _>>();
+    let made = match spec {
         ShapeSpec::Box(bounds) => Shape::cuboid(vector(&bounds.min), vector(&bounds.max)),
         ShapeSpec::Sphere { center, radius } => Shape::ball(vector(center), *radius),
         ShapeSpec::Cylinder { point, axis, radius, length } => {
             Shape::cylinder(vector(point), vector(axis), *radius, *length)
         }
         ShapeSpec::Polygon(vertices) => Shape::polygon(vertices.iter().map(|v| vector(v)).collect()),
+        ShapeSpec::Surface(spec) => Shape::surface(surface(spec)?),
         ShapeSpec::HalfSpace { point, normal } => Shape::half_space(vector(point), vector(normal)),
         ShapeSpec::LevelSet(field) => Ok(Shape::level_set(Arc::new(ExprLevelSet::<D> {
             value: field.expr.clone(),
@@ -134,8 +137,9 @@ fn shape<const D: usize>(spec: &ShapeSpec) -> Result<Shape<D>, GeometryError> {
         ShapeSpec::Difference(parts) => {
             let mut parts = all(parts)?.into_iter();
             // The reader has checked that there is a first.
-            let first = parts.next().map_or_else(|| Shape::union(Vec::new()), Ok)?;
-            Ok(parts.fold(first, Shape::difference))
+            let first = parts.next().map_or_else(|| Shape::union(Vec::new()), Ok);
+            first.map(|first| parts.fold(first, Shape::difference))
         }
-    }
+    };
+    made.map_err(|e| located(place, e))
 }

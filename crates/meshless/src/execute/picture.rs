@@ -128,6 +128,8 @@ fn plane<const D: usize>(scene: &Scene, plan: &Plan, solved: &Solved<D>) -> Resu
             .map(|shape| levels(&|x| shape.level(x)))
             .collect();
     }
+    let planar = |v: &[f64; D]| [v[0], v[1]];
+    picture.cuts = problem.slits.iter().map(|s| s.slit.vertices().iter().map(planar).collect()).collect();
     if crate::build::is_curved(scene) {
         picture.mask = Some(levels(&|x| problem.domain.level(x)));
     }

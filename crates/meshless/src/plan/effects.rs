@@ -38,6 +38,13 @@ pub enum Effect {
     Holes,
     /// The boundary is not a box.
     CurvedBoundary,
+    /// Surfaces of triangles from files.
+    Triangles {
+        /// How many.
+        count: usize,
+        /// How many more had no extent and are left out.
+        degenerate: usize,
+    },
     /// The spacing depends on position.
     GradedCloud,
 }
@@ -59,6 +66,7 @@ impl Effect {
             Self::Slits => "slits",
             Self::Holes => "holes",
             Self::CurvedBoundary => "curved boundary",
+            Self::Triangles { .. } => "triangulated surface",
             Self::GradedCloud => "graded cloud",
         }
     }
@@ -68,6 +76,10 @@ impl fmt::Display for Effect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DiffusivityJump { contrast } => write!(f, "{} ({contrast:.3e})", self.name()),
+            Self::Triangles { count, degenerate: 0 } => write!(f, "{} ({count} triangles)", self.name()),
+            Self::Triangles { count, degenerate } => {
+                write!(f, "{} ({count} triangles, {degenerate} without extent left out)", self.name())
+            }
             _ => f.write_str(self.name()),
         }
     }
@@ -114,6 +126,8 @@ impl Survey {
         note(!scene.slits.is_empty(), Effect::Slits);
         note(!scene.holes.is_empty(), Effect::Holes);
         note(build::is_curved(scene), Effect::CurvedBoundary);
+        let [count, degenerate] = build::triangle_counts(scene)?;
+        note(count > 0, Effect::Triangles { count, degenerate });
         note(scene.points.spacing.expr.as_constant().is_none(), Effect::GradedCloud);
         Ok(Self { effects, uniform, contrast })
     }

@@ -9,7 +9,7 @@ use super::expression::ExprField;
 use super::free_space::FREE_SPACE;
 use super::points_file::PointsFileSpec;
 use super::reader::{Table, Value};
-use super::shapes::{bounds, keys_with_shape, refuse_future_shapes, required_shape};
+use super::shapes::{bounds, keys_with_shape, required_shape};
 use super::spec::{
     ALL_FACES, BOX_FACES, DomainSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec, ShapeSpec,
 };
@@ -19,7 +19,6 @@ const DEFAULT_SEED: u64 = 1;
 
 pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     let table = root.require("domain")?.table()?;
-    refuse_future_shapes(&table)?;
     if let Some(value) = table.get(FREE_SPACE) {
         table.allow(&[FREE_SPACE])?;
         return Ok(DomainSpec { shape: ShapeSpec::Box(bounds(&value)?), bounds: None, place: table.place });
@@ -122,7 +121,6 @@ pub(super) fn holes(root: &Table<'_>) -> Result<Vec<HoleSpec>, SceneError> {
     let mut holes = Vec::new();
     let mut names = HashSet::new();
     for table in root.tables("holes")? {
-        refuse_future_shapes(&table)?;
         table.allow(&keys_with_shape(&["name"]))?;
         let value = table.require("name")?;
         let name = value.name()?;

@@ -6,7 +6,8 @@
 //! expressions: every [`ExprField`] keeps its place, so that a NaN met later can be reported with [`Place::error`].
 //!
 //! What a file can do is bounded: its length, the depth of its tables and the size of its expressions are limited,
-//! and the only other files that it names are tables of numbers: points, particles.
+//! and the only other files that it names are tables of numbers (points, particles) and surfaces of triangles, the latter
+//! read when they are first needed.
 
 mod accuracy;
 mod boundaries;
@@ -45,7 +46,7 @@ pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, HoleSpec, InterfaceSpec, LayoutName, MethodName,
     MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec, SlitSpec,
-    SolverName,
+    SolverName, SurfaceSpec,
 };
 
 pub use time::TimeSpec;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::error::SceneError;
 use super::reader::{Table, Value};
-use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape, refuse_future_shapes};
+use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape};
 use super::spec::{InterfaceSpec, PointValues, RegionSpec};
 
 /// Most regions of a scene; nodes carry the index of theirs in 16 bits.
@@ -51,7 +51,6 @@ pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
 }
 
 fn region(table: &Table<'_>) -> Result<RegionSpec, SceneError> {
-    refuse_future_shapes(table)?;
     table.allow(&keys_with_shape(&["name", "label", "diffusivity", "source", "exact"]))?;
     Ok(RegionSpec {
         name: table.require("name")?.name()?,

@@ -2,14 +2,15 @@
 
 use super::error::SceneError;
 use super::reader::{Table, Value};
-use super::spec::{BoundsSpec, ShapeSpec};
+use super::spec::{BoundsSpec, ShapeSpec, SurfaceSpec};
 
 /// Keys that say a shape; a table has at most one of them.
-pub(super) const SHAPE_KEYS: [&str; 9] = [
+pub(super) const SHAPE_KEYS: [&str; 10] = [
     "box",
     "sphere",
     "cylinder",
     "polygon",
+    "stl",
     "half_space",
     "level_set",
     "union",
@@ -17,22 +18,9 @@ pub(super) const SHAPE_KEYS: [&str; 9] = [
     "difference",
 ];
 
-/// Shapes that are recognised and not built.
-const FUTURE_SHAPES: [(&str, &str); 1] = [("stl", "describe the part by shapes or a level set")];
-
 /// The keys of a table that has a shape: its own and those of shapes.
 pub(super) fn keys_with_shape(own: &[&'static str]) -> Vec<&'static str> {
     own.iter().copied().chain(SHAPE_KEYS).collect()
-}
-
-/// Refuses the shapes that are recognised and not built.
-pub(super) fn refuse_future_shapes(table: &Table<'_>) -> Result<(), SceneError> {
-    for (key, help) in FUTURE_SHAPES {
-        if let Some(value) = table.get(key) {
-            return Err(value.not_supported(&format!("`{key}`"), help));
-        }
-    }
-    Ok(())
 }
 
 /// The one shape of a table; `None`, if it has none.
@@ -63,6 +51,7 @@ fn shape(key: &str, value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
         "sphere" => sphere(&value.subtable(&["center", "radius"])?),
         "cylinder" => cylinder(&value.subtable(&["point", "axis", "radius", "length"])?),
         "polygon" => polygon(value),
+        "stl" => surface(value),
         "half_space" => half_space(&value.subtable(&["point", "normal"])?),
         "level_set" => value.expression().map(ShapeSpec::LevelSet),
         "union" => parts(value).map(ShapeSpec::Union),
@@ -133,6 +122,37 @@ fn polygon(value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
     Ok(ShapeSpec::Polygon(vertices))
 }
 
+/// A file, or a table of it and how it is read.
+fn surface(value: &Value<'_>) -> Result<ShapeSpec, SceneError> {
+    needs_dimension(value.dimension, 3, "surface of triangles", |message, help| value.error(message, help))?;
+    if value.as_text().is_some() {
+        return Ok(ShapeSpec::Surface(SurfaceSpec::new(value.name()?, value.place.clone())));
+    }
+    let help = "give a file, or { file = \"part.stl\", scale = 0.001, crease = 30, smooth = true }";
+    let table = value.subtable(&["file", "scale", "crease", "smooth"]).map_err(|e| {
+        if e.message.starts_with("expected a table") {
+            value.expected("a file's name or a table", help)
+        } else {
+            e
+        }
+    })?;
+    let file = table.require("file")?;
+    let mut spec = SurfaceSpec::new(file.name()?, file.place.clone());
+    if let Some(scale) = table.get("scale") {
+        spec.params.scale = scale.positive()?;
+    }
+    if let Some(crease) = table.get("crease") {
+        spec.params.crease = crease.positive()?;
+        if spec.params.crease >= 180.0 {
+            return Err(crease.error("expected an angle between 0 and 180 degrees", ""));
+        }
+    }
+    if let Some(smooth) = table.get("smooth") {
+        spec.params.smooth = smooth.boolean()?;
+    }
+    Ok(ShapeSpec::Surface(spec))
+}
+
 fn needs_dimension(
     dimension: usize,
     needed: usize,
@@ -157,7 +177,6 @@ fn parts(value: &Value<'_>) -> Result<Vec<ShapeSpec>, SceneError> {
     }
     let part = |item: Value<'_>| {
         let table = item.table()?;
-        refuse_future_shapes(&table)?;
         table.allow(&SHAPE_KEYS)?;
         required_shape(&table)
     };

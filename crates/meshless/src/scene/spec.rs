@@ -1,5 +1,9 @@
 //! The parts of a scene.
 
+use std::sync::{Arc, OnceLock};
+
+use meshless_geometry::{SurfaceParams, TriangleSurface};
+
 use super::expression::ExprField;
 use super::options::MethodOptions;
 use super::points_file::PointsFileSpec;
@@ -67,6 +71,8 @@ pub enum ShapeSpec {
     },
     /// A closed polygon of at least three vertices; 2-D only.
     Polygon(Vec<[f64; 2]>),
+    /// The inside of a surface of triangles; 3-D only.
+    Surface(SurfaceSpec),
     /// Everything behind a plane.
     HalfSpace {
         /// A point of the plane.
@@ -84,11 +90,31 @@ pub enum ShapeSpec {
     Difference(Vec<ShapeSpec>),
 }
 
+/// A surface of triangles in a file, which is read when it is first needed.
+#[derive(Debug, Clone)]
+pub struct SurfaceSpec {
+    /// Path of the STL file, relative to the scene.
+    pub file: String,
+    /// How it is read.
+    pub params: SurfaceParams,
+    /// The value in the scene.
+    pub place: Place,
+    /// The surface, once it has been read; shared by copies of the scene.
+    pub(crate) loaded: Arc<OnceLock<Arc<TriangleSurface>>>,
+}
+
+impl SurfaceSpec {
+    /// A file that is read as it is.
+    pub(super) fn new(file: String, place: Place) -> Self {
+        Self { file, params: SurfaceParams::default(), place, loaded: Arc::default() }
+    }
+}
+
 impl ShapeSpec {
     /// Whether the shape is known to end by itself; of a level set, nothing is known.
     pub fn is_bounded(&self) -> bool {
         match self {
-            Self::Box(_) | Self::Sphere { .. } | Self::Polygon(_) => true,
+            Self::Box(_) | Self::Sphere { .. } | Self::Polygon(_) | Self::Surface(_) => true,
             Self::Cylinder { length, .. } => length.is_some(),
             Self::HalfSpace { .. } | Self::LevelSet(_) => false,
             Self::Union(parts) => parts.iter().all(Self::is_bounded),

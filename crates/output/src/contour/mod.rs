@@ -6,6 +6,7 @@
 //! bit by bit, and shared edges cancel.
 
 mod clip;
+mod cuts;
 mod extend;
 mod lines;
 mod outline;

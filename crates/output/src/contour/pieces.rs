@@ -2,6 +2,7 @@
 
 use super::Vertex;
 use super::clip::{Corner, Zero, clip, mix, mix2};
+use super::cuts::{is_left, side};
 use super::extend::extend;
 
 /// A field on a grid: where it is known, in which region, and where it ends.
@@ -17,6 +18,8 @@ pub(crate) struct Domain<'a> {
     pub(crate) mask: Option<&'a [f64]>,
     /// Level sets of the interfaces between the regions.
     pub(crate) interfaces: &'a [Vec<f64>],
+    /// Lines within regions that the field jumps across, in units of the grid.
+    pub(crate) cuts: &'a [Vec<[f64; 2]>],
 }
 
 /// Convex polygons with values at their corners.
@@ -145,7 +148,25 @@ impl Cutter<'_> {
                 outside,
             }
         });
-        self.cut(&corners, pieces);
+        let within = regions.iter().all(|region| *region == Some(self.region));
+        match self.domain.cut_through(nodes).filter(|_| within) {
+            None => self.cut(&corners, pieces),
+            Some(segment) => {
+                for left in [true, false] {
+                    let own = nodes.map(|(i, j)| is_left(&segment, &[i as f64, j as f64]) == left);
+                    let part = std::array::from_fn(|c| {
+                        let beside = side(&segment, &corners[c].at);
+                        let mut corner = Sided { side: if left { -beside } else { beside }, ..corners[c] };
+                        if !own[c] {
+                            let here = (0..4).filter(|&k| own[k]).map(|k| nodes[k]);
+                            corner.value = self.domain.beyond_cut(nodes[c], here);
+                        }
+                        corner
+                    });
+                    self.cut(&part, pieces);
+                }
+            }
+        }
     }
 
     /// Which side of the region's border each corner lies on: by the level set that tells the region from the others in

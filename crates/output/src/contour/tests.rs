@@ -10,7 +10,7 @@ fn sample(n: usize, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
 }
 
 fn square(n: usize, values: &[f64]) -> Domain<'_> {
-    Domain { nx: n, ny: n, values, labels: None, mask: None, interfaces: &[] }
+    Domain { nx: n, ny: n, values, labels: None, mask: None, interfaces: &[], cuts: &[] }
 }
 
 /// Area of the square (-1, 1)^2 in units of the areas of the grid of `n` nodes each way.
@@ -171,4 +171,34 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn a_field_that_jumps_across_a_cut_is_not_smeared() {
+    // One above and minus one below a line that ends in the middle; linear beyond, so that nothing jumps there.
+    let n = 41;
+    let field = |x: f64, y: f64| match () {
+        () if x > 0.0 => y * 0.5,
+        () if y >= 0.01 => 1.0 + y,
+        () => y - 1.0,
+    };
+    let values = sample(n, field);
+    let middle = 0.5 * (n - 1) as f64;
+    let cut = vec![[-1.0, middle + 0.2], [middle, middle + 0.2]];
+    let cuts = [cut];
+    let domain = Domain { cuts: &cuts, ..square(n, &values) };
+    let pieces = Pieces::new(&domain);
+    assert!((pieces_area(&pieces) - 4.0 * unit(n)).abs() < 1e-9);
+    // Left of the middle no piece has a value between the two sides.
+    let smeared = |pieces: &Pieces| {
+        let left = pieces.iter().filter(|p| p.iter().all(|v| v.at[0] < middle - 0.5));
+        left.flatten().filter(|v| v.value.abs() < 0.9).count()
+    };
+    assert_eq!(smeared(&pieces), 0);
+    let open = Pieces::new(&square(n, &values));
+    let across = |pieces: &Pieces| {
+        let left = pieces.iter().filter(|p| p.iter().all(|v| v.at[0] < middle - 0.5));
+        left.filter(|p| p.iter().any(|v| v.value > 0.5) && p.iter().any(|v| v.value < -0.5)).count()
+    };
+    assert_eq!((across(&pieces), across(&open)), (0, 19));
 }

@@ -22,11 +22,13 @@ pub(super) fn picture(picture: &FieldPicture, width: u32) -> String {
     let frame = Frame::new(picture, width);
     let mut svg = Svg::new(frame.page[0], frame.page[1]);
     let values = shown(&picture.values, picture.log);
-    let domain = picture.domain(&values);
+    let cuts = picture.cuts_on_grid();
+    let domain = picture.domain(&values, &cuts);
     let visible: Vec<f64> = (0..values.len()).filter(|&k| domain.contains(k)).map(|k| values[k]).collect();
     if let Some(levels) = Levels::new(&visible, picture.contours, picture.log) {
         fill(&domain, &levels, &frame, &mut svg);
         interfaces(picture, &frame, &mut svg);
+        slits(&cuts, &frame, &mut svg);
         color_bar(&levels, &frame, &mut svg);
     } else {
         let middle = [0, 1].map(|axis| frame.corner[axis] + 0.5 * frame.size[axis]);
@@ -86,9 +88,14 @@ fn band_color(band: usize, levels: &Levels) -> [u8; 3] {
 /// The zero lines of the interfaces, as far as they lie in the domain.
 fn interfaces(picture: &FieldPicture, frame: &Frame, svg: &mut Svg) {
     for level in &picture.interfaces {
-        let domain = Domain { labels: None, interfaces: &[], ..picture.domain(level) };
+        let domain = Domain { labels: None, interfaces: &[], ..picture.domain(level, &[]) };
         draw_lines(&level_lines(&Pieces::new(&domain), 0.0), "#000", INTERFACE_WIDTH, "", frame, svg);
     }
+}
+
+fn slits(cuts: &[Vec<[f64; 2]>], frame: &Frame, svg: &mut Svg) {
+    let placed: Vec<_> = cuts.iter().map(|line| on_page(line, frame)).collect();
+    svg.lines(placed.iter().map(|points| (points.as_slice(), false)), "#000", INTERFACE_WIDTH, "");
 }
 
 fn color_bar(levels: &Levels, frame: &Frame, svg: &mut Svg) {

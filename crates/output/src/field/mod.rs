@@ -40,6 +40,8 @@ pub struct FieldPicture {
     pub mask: Option<Vec<f64>>,
     /// Level sets of the interfaces at each grid node: lines are drawn where they are zero, and regions meet there.
     pub interfaces: Vec<Vec<f64>>,
+    /// Slits: open polylines that values are not joined across, drawn as lines.
+    pub cuts: Vec<Vec<[f64; 2]>>,
     /// Number of bands, about: their bounds are round numbers.
     pub contours: usize,
     /// Whether the bands are even in the logarithm; values that are not positive then belong to the lowest band.
@@ -97,7 +99,18 @@ impl FieldPicture {
         self.interfaces.iter().try_for_each(|level| length("interfaces", level.len()))
     }
 
-    fn domain<'a>(&'a self, values: &'a [f64]) -> Domain<'a> {
+    /// The slits in units of the grid.
+    fn cuts_on_grid(&self) -> Vec<Vec<[f64; 2]>> {
+        let counts = [self.nx, self.ny];
+        let on_grid = |x: &[f64; 2]| {
+            std::array::from_fn(|k| {
+                (x[k] - self.min[k]) / (self.max[k] - self.min[k]) * (counts[k] - 1) as f64
+            })
+        };
+        self.cuts.iter().map(|line| line.iter().map(on_grid).collect()).collect()
+    }
+
+    fn domain<'a>(&'a self, values: &'a [f64], cuts: &'a [Vec<[f64; 2]>]) -> Domain<'a> {
         Domain {
             nx: self.nx,
             ny: self.ny,
@@ -105,6 +118,7 @@ impl FieldPicture {
             labels: self.labels.as_deref(),
             mask: self.mask.as_deref(),
             interfaces: &self.interfaces,
+            cuts,
         }
     }
 }

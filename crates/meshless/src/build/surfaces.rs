@@ -1,0 +1,55 @@
+//! Surfaces of triangles, read from their files.
+
+use std::sync::Arc;
+
+use meshless_geometry::{GeometryError, MAX_STL_TRIANGLES, TriangleSurface, read_stl};
+
+use crate::Error;
+use crate::scene::{Scene, ShapeSpec, SurfaceSpec};
+
+/// Longest file that is read: an ASCII file has about 250 bytes a triangle.
+const MAX_BYTES: u64 = 300 * MAX_STL_TRIANGLES as u64;
+
+/// The surface of a file, which is read once for a scene and its copies.
+pub(super) fn surface(spec: &SurfaceSpec) -> Result<Arc<TriangleSurface>, Error> {
+    if let Some(known) = spec.loaded.get() {
+        return Ok(known.clone());
+    }
+    // Beside the scene, unless the path is absolute.
+    let path = spec.place.folder().join(&spec.file);
+    let wrong =
+        |what: String, help: &str| Error::from(spec.place.error(format!("{}: {what}", path.display()), help));
+    let unreadable =
+        |e: std::io::Error| wrong(format!("cannot be read: {e}"), "the path is relative to the scene");
+    let length = std::fs::metadata(&path).map_err(unreadable)?.len();
+    if length > MAX_BYTES {
+        return Err(wrong(format!("has {length} bytes, more than {MAX_BYTES}"), "simplify the surface"));
+    }
+    let bytes = std::fs::read(&path).map_err(unreadable)?;
+    let invalid = |e: GeometryError| wrong(e.to_string(), "");
+    let triangles = read_stl(&bytes).map_err(invalid)?;
+    let surface = TriangleSurface::new(&triangles, &spec.params).map_err(invalid)?;
+    Ok(spec.loaded.get_or_init(|| Arc::new(surface)).clone())
+}
+
+/// Triangles of all surfaces of a scene, and how many had no extent and were left out.
+pub(crate) fn triangle_counts(scene: &Scene) -> Result<[usize; 2], Error> {
+    let mut waiting: Vec<&ShapeSpec> = vec![&scene.domain.shape];
+    waiting.extend(scene.holes.iter().map(|hole| &hole.shape));
+    waiting.extend(scene.regions.iter().filter_map(|region| region.geometry.as_ref()));
+    let mut counts = [0, 0];
+    while let Some(shape) = waiting.pop() {
+        match shape {
+            ShapeSpec::Surface(spec) => {
+                let surface = surface(spec)?;
+                counts[0] += surface.triangles().len();
+                counts[1] += surface.degenerate();
+            }
+            ShapeSpec::Union(parts) | ShapeSpec::Intersection(parts) | ShapeSpec::Difference(parts) => {
+                waiting.extend(parts);
+            }
+            _ => {}
+        }
+    }
+    Ok(counts)
+}
