@@ -12,6 +12,7 @@ pub mod sharp;
 pub mod small;
 pub mod smooth;
 pub mod solve;
+pub mod surfaces;
 pub mod unsteady;
 
 /// The Rust blocks of the README are doctests of this package.

@@ -28,8 +28,8 @@ fn a_slit_that_crosses_the_rim_of_an_inclusion_is_refused_with_the_place() {
                 [[regions]]\nname = \"inclusion\"\nsphere = { center = [0, 0], radius = 0.4 }\ndiffusivity = 10\n\
                 [[regions]]\nname = \"matrix\"\ndiffusivity = 1\n[[boundaries]]\nface = \"all\"\ndirichlet = \"x\"\n";
     let refused = |text: &str| {
-        let scene = meshless::scene::Scene::parse(text, "crossed.toml").unwrap();
-        let plan = meshless::plan::Plan::new(&scene).unwrap();
+        let scene = Scene::parse(text, "crossed.toml").unwrap();
+        let plan = Plan::new(&scene).unwrap();
         meshless::execute(&scene, &plan, &mut meshless::Silent).err().map(|error| error.to_string())
     };
     let message = refused(text).expect("a refusal");

@@ -203,11 +203,14 @@ impl<const D: usize> Domain<D> {
         self.outer.project(x, reach)
     }
 
-    /// Length, area or volume. Exact for a box without holes; otherwise the share of 65536 quasi-random points of the
+    /// Length, area or volume. Exact for a box and a surface of triangles without holes; otherwise the share of 65536 quasi-random points of the
     /// bounding box that lie inside: always the same, and good to about 1e-3 of the bounding box's measure.
     pub fn measure_estimate(&self) -> f64 {
         if self.outer_box().is_some() && self.holes.is_empty() {
             return self.bounds.measure();
+        }
+        if let (Shape::Surface(surface), true) = (&self.outer, self.holes.is_empty()) {
+            return surface.volume();
         }
         let inside =
             Kronecker::new(&self.bounds).take(MEASURE_SAMPLES).filter(|x| self.level(x) <= 0.0).count();
