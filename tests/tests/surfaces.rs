@@ -99,7 +99,8 @@ fn what_is_wrong_with_a_file_is_told_with_the_place_in_the_scene() {
                         "box = {{ min = [-2, -2, -2], max = [2, 2, 2] }}\n[[holes]]\nname = \"h\"\n{stl}"
                     ),
                     0.5,
-                ),
+                )
+                .replace("\"outer\"", "\"all\""),
             };
             let scene = scene(folder.path(), &text);
             let message = Plan::new(&scene).expect_err("a refusal").to_string();
