@@ -77,7 +77,7 @@ pub(super) fn run(options: &Options) -> Study {
 }
 
 /// Relative error over the points of the reference.
-fn at_reference(outcome: &Outcome) -> Option<f64> {
+pub(super) fn at_reference(outcome: &Outcome) -> Option<f64> {
     let probes = &outcome.report.probes;
     let values: Option<Vec<f64>> = probes.iter().map(|p| p.value).collect();
     let values = values.filter(|v| v.len() == REFERENCE.len())?;

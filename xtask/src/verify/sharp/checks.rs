@@ -1,6 +1,7 @@
 //! Claims.
 
-use super::cases::{self, Ladder};
+use super::cases::Ladder;
+use super::singles;
 use crate::verify::claims::Claims;
 pub(super) use crate::verify::ladder::{Error, rungs};
 use crate::verify::options::Effort;
@@ -9,7 +10,7 @@ use crate::verify::runner::Runner;
 use crate::verify::study::{Key, find};
 
 /// Least orders of u and of its gradient, by the order of the polynomials.
-const ORDERS: [(usize, [f64; 2]); 2] = [(4, [3.7, 3.3]), (6, [5.3, 4.8])];
+const ORDERS: [(usize, [f64; 2]); 3] = [(2, [1.8, 1.3]), (4, [3.7, 3.3]), (6, [5.3, 4.8])];
 
 /// Where three rungs are all there is, the coarsest of which resolves the interface by a few nodes.
 const QUICK_MARGIN: f64 = 0.4;
@@ -76,8 +77,8 @@ fn spread(
 
 /// Errors at given numbers of nodes.
 pub(super) fn single(runner: &Runner<'_>, effort: Effort, claims: &mut Claims) {
-    for single in cases::singles(effort) {
-        let key = cases::distinct(single.key, single.what);
+    for single in singles::singles(effort) {
+        let key = single.key;
         if runner.options.wants(key.case, "sharp") {
             let measured = find(&runner.outcomes, &key).and_then(|o| o.row.err_l2);
             claims.at_most(key.case, format!("{}: relative L2 error", single.what), measured, single.l2);

@@ -3,6 +3,7 @@
 mod cases;
 mod checks;
 mod sections;
+mod singles;
 
 use super::claims::Claims;
 use super::jobs::Job;
@@ -17,7 +18,7 @@ const SUITE: &str = "sharp";
 pub(super) const ABOUT: &str = "The sharp method: orders of u and of its gradient on irregular clouds that know nothing of the interface, errors at \
     given numbers of nodes, the spread over contrasts, and the error against seconds of all methods on the same clouds.";
 
-pub(super) const CASES: [&str; 15] = [
+pub(super) const CASES: [&str; 18] = [
     "interior",
     "mode-3",
     "disc",
@@ -31,8 +32,11 @@ pub(super) const CASES: [&str; 15] = [
     "flat",
     "corner-90",
     "corner-45",
+    "three-strip",
     "ball",
     "torus",
+    "shells",
+    "inclusions",
 ];
 
 /// The method at an order, solved directly.
@@ -45,12 +49,24 @@ const fn sharp_in_space(order: usize) -> Variant {
     Variant { solver: Some("gmres"), ..sharp(order) }
 }
 
-/// What it is compared with.
-const OTHERS: [Variant; 3] = [
+/// What it is compared with: all methods of the workspace, as they choose their parameters themselves, and a higher order
+/// of its own.
+const OTHERS: [Variant; 8] = [
+    sharp(8),
+    Variant::plain("gfdm-classical").directly(),
+    Variant::plain("gfdm-positive").directly(),
     Variant::plain("gfdm-hybrid").directly(),
+    Variant::plain("gfdm-conservative").directly(),
     Variant { support: None, ..Variant::plain("particle-difference").directly() },
     Variant { support: None, ..Variant::plain("immersed-interface").directly() },
+    Variant { support: None, ..Variant::plain("surface-reaction").directly() },
 ];
+
+/// The other methods that a case is solved by: collocation alone does not know jumps of the flux.
+fn others(case: &str) -> impl Iterator<Item = Variant> {
+    let flux_jumps = case == "disc";
+    OTHERS.into_iter().filter(move |v| !(flux_jumps && v.method == "gfdm-classical"))
+}
 
 /// Node spacing of a rung.
 fn spacing(level: usize) -> f64 {
@@ -63,18 +79,26 @@ pub(super) fn run(options: &Options) -> Study {
     let effort = options.effort;
     let ladders = ladders(effort);
     let mut jobs: Vec<Job> = ladders.iter().flat_map(ladder_jobs).collect();
-    jobs.extend(cases::single_runs(effort));
+    jobs.extend(singles::single_runs(effort));
     runner.run_all(jobs);
     for ladder in &ladders {
         if options.wants(ladder.case, "sharp") {
             checks::ladder(&runner, ladder, &mut claims);
         }
     }
+    at_probes(&mut runner);
     checks::single(&runner, effort, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
     let sections = sections::sections(&runner, &ladders);
     Study { suite: SUITE, outcomes: runner.outcomes, claims: claims.by_case(&CASES), sections }
+}
+
+/// The error of a case whose solution is known at some points.
+fn at_probes(runner: &mut Runner<'_>) {
+    for outcome in runner.outcomes.iter_mut().filter(|o| o.key.case == "inclusions") {
+        outcome.row.err_l2 = super::dcpse::at_reference(outcome);
+    }
 }
 
 fn ladder_jobs(ladder: &Ladder) -> Vec<Job> {
@@ -93,7 +117,7 @@ fn ladder_jobs(ladder: &Ladder) -> Vec<Job> {
     }
     // The others on the first contrast and cloud only: for the diagram of costs.
     if ladder.compared {
-        for variant in OTHERS {
+        for variant in others(ladder.case) {
             let (jump, seed) = (ladder.contrasts[0], ladder.seeds[0]);
             jobs.extend(ladder.levels.clone().map(|level| Job {
                 problem: (ladder.scene)(jump, spacing(level), seed),
