@@ -4,7 +4,7 @@ use meshless::plan::{Plan, Stage};
 use meshless::scene::{MethodName, Scene};
 use meshless_tests::order::observed;
 use meshless_tests::particle_difference::{
-    Regularity, SlitSetup, ball, circle, corner_45, corner_90, crack, cylinder, slit,
+    Regularity, SlitSetup, ball, circle, corner_45, corner_90, crack, cylinder, cylinder_prescribed, slit,
 };
 use meshless_tests::small::Small;
 use meshless_tests::solve::solve_with;
@@ -182,4 +182,28 @@ fn methods_that_do_not_know_slits_refuse_them_at_their_place() {
         error.to_string().contains("gfdm-hybrid") && error.to_string().contains("crack.toml:"),
         "{error}"
     );
+}
+
+/// Section 3.5: on the cylinder u is prescribed, and how its slope jumps is found. The paper has orders 1.45 and 0.72.
+#[test]
+fn u_prescribed_on_an_interface_gives_the_jump_of_its_slope() {
+    let scene = |nodes| cylinder_prescribed(nodes, Regularity::Grid);
+    let plan = Plan::new(&Scene::parse(&scene(20), "cylinder.toml").unwrap()).unwrap();
+    assert_eq!(plan.method.name, MethodName::ParticleDifferenceExtended);
+    let (mut values, mut jumps) = (Vec::new(), Vec::new());
+    for nodes in [20, 40, 80] {
+        let report = solve_with(&scene(nodes), MethodName::Auto).unwrap().report;
+        let errors = report.errors.expect("an exact solution");
+        values.push((report.spacing, errors.linf));
+        jumps.push((report.spacing, errors.jump_linf.expect("jumps are unknowns")));
+    }
+    assert!(observed(&values) >= 1.45, "{values:?}");
+    assert!(observed(&jumps) >= 0.7, "{jumps:?}");
+}
+
+#[test]
+fn other_methods_refuse_to_prescribe_u_on_an_interface() {
+    let text = cylinder_prescribed(20, Regularity::Grid) + "\n[method]\nname = \"gfdm-hybrid\"\n";
+    let error = Plan::new(&Scene::parse(&text, "cylinder.toml").unwrap()).expect_err("refused");
+    assert!(error.is_input() && error.to_string().contains("particle-difference-extended"), "{error}");
 }

@@ -61,6 +61,9 @@ pub struct InterfaceJump<const D: usize> {
     pub value: Option<Field<D>>,
     /// `(eta du/dn)_B - (eta du/dn)_A`, `None` for zero.
     pub flux: Option<Field<D>>,
+    /// u on the interface, where it is prescribed there; the flux then jumps by whatever that takes, and `flux` is `None`.
+    /// For methods that have the jump as an unknown.
+    pub prescribed: Option<Field<D>>,
 }
 
 /// The supports of all nodes: whom a node may use, and how far its interaction reaches.

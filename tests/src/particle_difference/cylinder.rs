@@ -2,6 +2,16 @@
 
 use super::{Regularity, dirichlet, head};
 
+/// [`cylinder`] as the paper solves it: u = 0 is prescribed on the circle, and the jump of the slope follows.
+pub fn cylinder_prescribed(nodes: usize, regularity: Regularity) -> String {
+    let scene = cylinder(nodes, regularity);
+    let (first, last) = (scene.find("flux_jump ="), scene.find("[[boundaries]]"));
+    match (first, last) {
+        (Some(first), Some(last)) => format!("{}dirichlet = 0\n\n{}", &scene[..first], &scene[last..]),
+        _ => scene,
+    }
+}
+
 /// Uniform speed 1, circulation -2; the conductivity is 1 everywhere, the flux jumps by `2 sin(theta) + 2/pi`.
 pub fn cylinder(nodes: usize, regularity: Regularity) -> String {
     let r2 = "((x - 1)^2 + (y - 1)^2)";

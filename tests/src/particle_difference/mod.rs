@@ -12,7 +12,7 @@ mod wedges;
 
 pub use ball::ball;
 pub use circle::circle;
-pub use cylinder::cylinder;
+pub use cylinder::{cylinder, cylinder_prescribed};
 pub use points::{circle_by_points, cylinder_by_points};
 pub use slit::{SlitSetup, crack, slit};
 pub use wedges::{corner_45, corner_90};

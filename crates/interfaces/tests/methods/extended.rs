@@ -23,7 +23,7 @@ fn kinked<const D: usize>(eta: [f64; 2], wedge: Wedge, seed: u64) -> [f64; 2] {
         .regions(vec![Some(Shape::half_space([0.47; D], normal).unwrap()), None], &eta)
         .conditions(move |_, x| Condition::Dirichlet(u(x)));
     let (value, flux) = (Some(Field::Constant(value)), Some(Field::Constant(flux)));
-    setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux }];
+    setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux, prescribed: None }];
     let params = ParticleDifferenceParams { wedge, ..ParticleDifferenceParams::default() };
     let (method, problem) = (ParticleDifferenceExtended { params }, setup.problem());
     let rows = method.discretize(&problem).unwrap();

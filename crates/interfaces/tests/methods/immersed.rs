@@ -88,7 +88,7 @@ fn piecewise<const D: usize>(
             condition_of_kind(kinds[face.0 as usize], q[k].at(x), slope, eta[k])
         });
     let (value, flux) = (Some(Field::from_fn(value)), Some(Field::from_fn(flux)));
-    setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux }];
+    setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux, prescribed: None }];
     let u = setup.nodal(|label, x| q[label as usize].at(x));
     let params = ImmersedParams { ghosts: Ghosts::Constrained { degree }, ..Default::default() };
     let rows = ImmersedInterface { params }.discretize(&setup.problem()).unwrap();
@@ -203,7 +203,7 @@ fn ghosts_by_images_are_exact_for_linear_functions() {
             .regions(vec![Some(Shape::half_space([0.5, 0.48], n).unwrap()), None], &eta)
             .conditions(move |_, x| Condition::Dirichlet(value(x)));
         let (jump, flux) = (Some(Field::Constant(0.2)), Some(Field::Constant(0.9)));
-        setup.jumps = vec![InterfaceJump { between: [0, 1], value: jump, flux }];
+        setup.jumps = vec![InterfaceJump { between: [0, 1], value: jump, flux, prescribed: None }];
         let params = ImmersedParams { ghosts: Ghosts::Image(interpolation), ..Default::default() };
         let rows = ImmersedInterface { params }.discretize(&setup.problem()).unwrap();
         let found = defect::<2>(&rows, &setup.nodal(|_, x| value(x)));

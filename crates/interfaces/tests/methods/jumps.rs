@@ -10,7 +10,7 @@ use crate::support::{Setup, condition_of_kind, dot, grid, max_difference, relati
 /// A jump given from A to B, or the same one from B to A.
 fn jump<const D: usize>(reversed: bool, value: Field<D>, flux: Field<D>) -> InterfaceJump<D> {
     let between = if reversed { [1, 0] } else { [0, 1] };
-    InterfaceJump { between, value: Some(value), flux: Some(flux) }
+    InterfaceJump { between, value: Some(value), flux: Some(flux), prescribed: None }
 }
 
 proptest! {

@@ -48,7 +48,12 @@ fn the_operator_on_a_ramp_makes_a_kink_exact() {
             .with_support(2.9)
             .regions(vec![Some(Shape::half_space([0.5, 0.48], n).unwrap()), None], &[2.0, 2.0])
             .conditions(move |_, x| Condition::Dirichlet(value(x)));
-        setup.jumps = vec![InterfaceJump { between: [0, 1], value: None, flux: Some(Field::Constant(14.0)) }];
+        setup.jumps = vec![InterfaceJump {
+            between: [0, 1],
+            value: None,
+            flux: Some(Field::Constant(14.0)),
+            prescribed: None,
+        }];
         let exact = setup.nodal(|_, x| value(x));
         let error = |params| max_difference(&setup.solve_by(&SurfaceReaction { params }), &exact);
         let ours = error(ReactionParams::default());
@@ -84,7 +89,12 @@ fn the_harmonic_mean_converges_across_layers_and_the_arithmetic_one_does_not() {
 #[test]
 fn jumps_of_the_value_are_refused() {
     let mut setup = disc(Layout::Jittered, 0.1, [1.0; 3]);
-    setup.jumps = vec![InterfaceJump { between: [0, 1], value: Some(Field::Constant(1.0)), flux: None }];
+    setup.jumps = vec![InterfaceJump {
+        between: [0, 1],
+        value: Some(Field::Constant(1.0)),
+        flux: None,
+        prescribed: None,
+    }];
     let refused = SurfaceReaction::default().discretize(&setup.problem());
     assert!(matches!(refused, Err(MethodError::Unsupported { .. })));
 }

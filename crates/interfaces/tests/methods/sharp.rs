@@ -49,6 +49,7 @@ fn setup(inside: f64) -> Setup<2> {
         between: [0, 1],
         value: Some(jump),
         flux: Some(flux),
+        prescribed: None,
     });
     setup
 }

@@ -74,8 +74,9 @@ pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
             between: i.between.map(|r| r as u16),
             value: nonzero(&i.jump),
             flux: i.flux_jump_at.as_ref().map_or_else(|| nonzero(&i.flux_jump), at_points),
+            prescribed: i.dirichlet.as_ref().map(|f| field(&f.expr)),
         })
-        .filter(|j| j.value.is_some() || j.flux.is_some())
+        .filter(|j| j.value.is_some() || j.flux.is_some() || j.prescribed.is_some())
         .collect()
 }
 

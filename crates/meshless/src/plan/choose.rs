@@ -35,6 +35,18 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
             .error(message, "use \"particle-difference\", or leave the choice to the plan")
             .into());
     }
+    let prescribed = scene.interfaces.iter().find(|i| i.dirichlet.is_some());
+    if let (Some(interface), false) =
+        (prescribed, matches!(named, MethodName::Auto | MethodName::ParticleDifferenceExtended))
+    {
+        let message = format!("the method \"{}\" cannot prescribe u on an interface", named.as_str());
+        let help = "use \"particle-difference-extended\", or leave the choice to the plan";
+        return Err(interface.place.error(message, help).into());
+    }
+    if let (true, Some(interface)) = (slits || scene.time.is_some(), prescribed) {
+        let message = "u can be prescribed on an interface in steady scenes without slits only";
+        return Err(interface.place.error(message, "prescribe jumps instead").into());
+    }
     if let (MethodName::ParticleDifferenceExtended, Some(time)) = (named, &scene.time) {
         let message = "the method \"particle-difference-extended\" solves steady scenes only";
         return Err(time.place.error(message, "use \"particle-difference\"").into());
@@ -48,6 +60,10 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     let (name, why) = match (named, accuracy) {
         (MethodName::Auto, _) if slits => {
             (MethodName::ParticleDifference, "a slit: stencils that do not see through it".to_owned())
+        }
+        (MethodName::Auto, _) if prescribed.is_some() => {
+            let why = "u is prescribed on an interface: the jump of the slope is an unknown".to_owned();
+            (MethodName::ParticleDifferenceExtended, why)
         }
         (MethodName::Auto, Some(goal)) => {
             let choice = goal.choose(scene, survey);

@@ -20,6 +20,8 @@ pub enum Effect {
     ValueJump,
     /// The flux jumps across an interface.
     FluxJump,
+    /// u is prescribed on an interface, and the flux jumps by what that takes.
+    PrescribedInterface,
     /// There is a source.
     Source,
     /// A prescribed normal derivative.
@@ -57,6 +59,7 @@ impl Effect {
             Self::VariableDiffusivity => "variable diffusivity",
             Self::ValueJump => "value jump",
             Self::FluxJump => "flux jump",
+            Self::PrescribedInterface => "prescribed interface",
             Self::Source => "source",
             Self::Neumann => "neumann boundary",
             Self::Flux => "flux boundary",
@@ -112,7 +115,9 @@ impl Survey {
         note(scene.interfaces.iter().any(|i| nonzero(i.jump.as_ref())), Effect::ValueJump);
         let flux_jumps =
             scene.interfaces.iter().any(|i| nonzero(i.flux_jump.as_ref()) || i.flux_jump_at.is_some());
-        note(flux_jumps, Effect::FluxJump);
+        let prescribed = scene.interfaces.iter().any(|i| i.dirichlet.is_some());
+        note(flux_jumps || prescribed, Effect::FluxJump);
+        note(prescribed, Effect::PrescribedInterface);
         note(scene.regions.iter().any(|r| nonzero(r.source.as_ref())), Effect::Source);
         let any = |test: fn(&ConditionSpec) -> bool| scene.boundaries.iter().any(|b| test(&b.condition));
         note(any(|c| matches!(c, ConditionSpec::Neumann(_))), Effect::Neumann);

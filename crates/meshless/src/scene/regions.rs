@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::error::SceneError;
+use super::expression::ExprField;
 use super::reader::{Table, Value};
 use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape};
 use super::spec::{InterfaceSpec, PointValues, RegionSpec};
@@ -92,7 +93,7 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
     let mut interfaces = Vec::new();
     let mut pairs = HashSet::new();
     for table in root.tables("interfaces")? {
-        table.allow(&["between", "jump", "flux_jump", "flux_jump_at"])?;
+        table.allow(&["between", "jump", "flux_jump", "flux_jump_at", "dirichlet"])?;
         let value = table.require("between")?;
         let between = pair(&value, regions)?;
         if !pairs.insert([between[0].min(between[1]), between[0].max(between[1])]) {
@@ -103,10 +104,21 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
             jump: table.get("jump").map(|value| value.data_expression()).transpose()?,
             flux_jump: table.get("flux_jump").map(|value| value.data_expression()).transpose()?,
             flux_jump_at: flux_jump_at(&table)?,
+            dirichlet: dirichlet(&table)?,
             place: table.place,
         });
     }
     Ok(interfaces)
+}
+
+/// u on the interface, in place of jumps.
+fn dirichlet(table: &Table<'_>) -> Result<Option<ExprField>, SceneError> {
+    let Some(value) = table.get("dirichlet") else { return Ok(None) };
+    if ["jump", "flux_jump", "flux_jump_at"].iter().any(|key| table.has(key)) {
+        let help = "u is prescribed on both sides, and the flux jumps by what that takes: remove the jumps";
+        return Err(value.error("an interface has either `dirichlet` or jumps", help));
+    }
+    value.data_expression().map(Some)
 }
 
 /// The flux jump at points.

@@ -193,6 +193,8 @@ pub struct InterfaceSpec {
     pub flux_jump: Option<ExprField>,
     /// The same at points of the interface, linear in between, in place of an expression.
     pub flux_jump_at: Option<PointValues>,
+    /// u on the interface, in place of all of these.
+    pub dirichlet: Option<ExprField>,
     /// The table in the file.
     pub place: Place,
 }

@@ -3,6 +3,7 @@
 mod cases;
 mod checks;
 mod points;
+mod prescribed;
 mod reproduce;
 mod sections;
 mod slit;
@@ -21,8 +22,8 @@ pub(super) const ABOUT: &str = "Interface-immersed particle differences: as Yoon
     varies along the interface, the second derivative that the equation gives, and weights in units of the flux; against \
     the conservative hybrid on the same clouds. Seed 0 is the regular cloud of the paper.";
 
-pub(super) const CASES: [&str; 7] =
-    ["circle", "corner-90", "corner-45", "cylinder", "slit", "ball", "contrast"];
+pub(super) const CASES: [&str; 8] =
+    ["circle", "corner-90", "corner-45", "cylinder", prescribed::CASE, "slit", "ball", "contrast"];
 
 /// As the plan chooses it.
 const OURS: Variant = Variant { support: None, ..Variant::plain("particle-difference").directly() };
@@ -73,6 +74,7 @@ pub(super) fn run(options: &Options) -> Study {
     }
     jobs.extend(slit::jobs(rungs.min(4)));
     jobs.extend(points::jobs());
+    jobs.extend(prescribed::jobs(rungs));
     runner.run_all(jobs);
     for ladder in LADDERS.iter().filter(|l| options.wants(l.case, OURS.method)) {
         checks::ladder(&runner, ladder, &mut claims);
@@ -81,6 +83,7 @@ pub(super) fn run(options: &Options) -> Study {
     slit::claims(&runner, &mut claims);
     points::claims(&runner, &mut claims);
     checks::former(&runner, &mut claims);
+    prescribed::claims(&runner, &mut claims);
     let reproduced = reproduce::run(options, 3);
     reproduce::claims(&reproduced, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));

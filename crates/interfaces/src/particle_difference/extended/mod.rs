@@ -2,7 +2,8 @@
 //!
 //! Y.-C. Yoon and J.-H. Song (2021), the last lines of section 3.5, and their earlier papers [6, 8] there. Beyond an
 //! interface `u = q + a + d J`, with the jump J of the slope at the foot interpolated between unknowns at points of the
-//! interface; for each of them there is one more equation, that the flux jumps by g. It is here to be compared with
+//! interface; for each of them there is one more equation, that the flux jumps by g, or that u has a prescribed value on the
+//! interface, which J then follows from (section 3.5). It is here to be compared with
 //! [`ParticleDifference`](super::ParticleDifference), which eliminates J where it arises.
 
 mod points;
@@ -16,7 +17,7 @@ use rayon::prelude::*;
 use super::feet::Feet;
 use super::{ParticleDifference, ParticleDifferenceParams, Wedge};
 use crate::method::{Counts, Discretization, Method, RowKind};
-use crate::{MethodError, Problem};
+use crate::{MethodError, Problem, SystemSolution};
 use points::InterfacePoints;
 use rows::{ExtendedRow, RowMaker};
 
@@ -96,5 +97,24 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
         let wedge = if self.params.wedge == Wedge::Plane { Wedge::Plane } else { Wedge::Varying };
         let params = ParticleDifferenceParams { wedge, ..self.params };
         ParticleDifference { params }.gradient(problem, u)
+    }
+
+    /// That of the fits, with the jumps that were found.
+    fn gradient_of(
+        &self,
+        problem: &Problem<'_, D>,
+        solution: &SystemSolution,
+    ) -> Result<Vec<[f64; D]>, MethodError> {
+        let feet = Feet::new(problem);
+        let points = InterfacePoints::new(problem, &feet);
+        let maker = RowMaker::new(problem, &feet, &points, self.params);
+        let gradients = (0..problem.cloud.len())
+            .into_par_iter()
+            .map_init(
+                || maker.scratch(),
+                |scratch, i| maker.gradient(i, &solution.u, &solution.extra, scratch),
+            )
+            .collect::<Vec<Result<_, MethodError>>>();
+        gradients.into_iter().collect()
     }
 }

@@ -119,10 +119,77 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         Ok((a, g, direction))
     }
 
-    /// The flux condition at a point: `kappa_B (dq/dn + J) - kappa_A dq/dn = g`, divided by both conductivities.
+    /// The gradient at a node, on its own side, of values `u` and jumps.
+    pub(super) fn gradient(
+        &self,
+        i: usize,
+        u: &[f64],
+        jumps: &[f64],
+        scratch: &mut Scratch<D>,
+    ) -> Result<[f64; D], MethodError> {
+        let problem = self.problem;
+        let centre = Centre {
+            at: problem.cloud.points()[i],
+            region: problem.labels[i],
+            node: i,
+            feet: self.feet.of(i),
+        };
+        let mut gradient = [0.0; D];
+        for axis in 0..D {
+            let functional = Functional::Directional(std::array::from_fn(|k| f64::from(u8::from(k == axis))));
+            let mut row = ExtendedRow::default();
+            let near = problem.supports.lists.of(i);
+            let given = match self.apply(&centre, near, &functional, 1.0, scratch, &mut row) {
+                Ok(given) => given,
+                Err(_) => {
+                    row = ExtendedRow::default();
+                    self.apply(&centre, &enlarged_support(problem, i), &functional, 1.0, scratch, &mut row)?
+                }
+            };
+            let of_nodes: f64 = row.nodes.iter().map(|&(j, c)| c * (u[j as usize] - u[i])).sum();
+            gradient[axis] =
+                given + of_nodes + row.jumps.iter().map(|&(k, c)| c * jumps[k as usize]).sum::<f64>();
+        }
+        Ok(gradient)
+    }
+
+    /// The condition at a point where u is prescribed: the polynomial of the first side has that value, up to the jump of u.
+    fn value_at_point(
+        &self,
+        k: usize,
+        value: f64,
+        scratch: &mut Scratch<D>,
+    ) -> Result<ExtendedRow, MethodError> {
+        let (problem, point) = (self.problem, self.points.list[k]);
+        let [first, second] = point.between;
+        let at = meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 };
+        let feet = [Foot { beyond: second, at }];
+        let centre = Centre { at: point.at, region: first, node: point.node, feet: &feet };
+        let near = || [problem.supports.lists.of(point.node), &[point.node as u32]].concat();
+        let wide = || [&enlarged_support(problem, point.node)[..], &[point.node as u32]].concat();
+        let mut row = ExtendedRow::default();
+        let given = match self.apply(&centre, &near(), &Functional::Value, 1.0, scratch, &mut row) {
+            Ok(given) => given,
+            Err(_) => {
+                row = ExtendedRow::default();
+                self.apply(&centre, &wide(), &Functional::Value, 1.0, scratch, &mut row)?
+            }
+        };
+        row.rhs = value - given;
+        row.row_sum = row.nodes.iter().map(|(_, c)| c).sum();
+        Ok(row)
+    }
+
+    /// The flux condition at a point: `kappa_B (dq/dn + J) - kappa_A dq/dn = g`, divided by both conductivities; or, where
+    /// u is prescribed on the interface, that.
     pub(super) fn point(&self, k: usize, scratch: &mut Scratch<D>) -> Result<ExtendedRow, MethodError> {
         let (problem, point) = (self.problem, self.points.list[k]);
         let [first, second] = point.between;
+        if let Some((jump, _)) = problem.jump_between(first, second)
+            && let Some(u) = &jump.prescribed
+        {
+            return self.value_at_point(k, u.at(&point.at), scratch);
+        }
         let eta = point.between.map(|l| problem.materials[l as usize].diffusivity.at(&point.at));
         let flux = problem.jump_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
         let h = problem.cloud.spacing()[point.node];

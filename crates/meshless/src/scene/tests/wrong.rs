@@ -225,6 +225,13 @@ fn interfaces() {
             ),
             wrong(
                 "flux_jump = \"0.2\"",
+                "flux_jump = \"0.2\"\ndirichlet = «0»",
+                "interfaces[0].dirichlet",
+                "either `dirichlet` or jumps",
+                "",
+            ),
+            wrong(
+                "flux_jump = \"0.2\"",
                 "flux_jump = «2024-01-01»",
                 "interfaces[0].flux_jump",
                 "found a date",
