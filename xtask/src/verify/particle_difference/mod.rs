@@ -74,7 +74,7 @@ pub(super) fn run(options: &Options) -> Study {
     }
     jobs.extend(slit::jobs(rungs.min(4)));
     jobs.extend(points::jobs());
-    jobs.extend(prescribed::jobs(rungs));
+    jobs.extend(prescribed::jobs(rungs.max(4)));
     runner.run_all(jobs);
     for ladder in LADDERS.iter().filter(|l| options.wants(l.case, OURS.method)) {
         checks::ladder(&runner, ladder, &mut claims);

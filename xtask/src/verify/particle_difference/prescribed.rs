@@ -11,7 +11,7 @@ use crate::verify::study::{Key, Outcome, find};
 
 pub(super) const CASE: &str = "cylinder-prescribed";
 
-/// Rungs of which orders are taken.
+/// Rungs of which orders are taken, at least.
 const RUNGS: usize = 3;
 
 fn key(varying: bool, level: usize, seed: u64) -> Key {
@@ -37,20 +37,22 @@ pub(super) fn claims(runner: &Runner<'_>, claims: &mut Claims) {
         for seed in SEEDS.into_iter().filter(|&seed| varying || seed == GRID) {
             let cloud = if seed == GRID { "regular" } else { "scattered" };
             let fitted = |of: fn(&Outcome) -> Option<f64>| {
-                let points: Vec<(f64, f64)> = (0..RUNGS)
-                    .filter_map(|level| {
+                let points: Vec<(f64, f64)> = (0..)
+                    .map_while(|level| {
                         let outcome = find(&runner.outcomes, &key(varying, level, seed))?;
                         Some((outcome.row.spacing, of(outcome)?))
                     })
                     .collect();
-                (points.len() == RUNGS).then(|| order::fit(&points)).flatten()
+                (points.len() >= RUNGS).then(|| order::fit(&points)).flatten()
             };
             let mut expect = |what: &str, of: fn(&Outcome) -> Option<f64>, least: f64| {
                 claims.at_least(CASE, format!("{label}, {cloud} cloud: order of {what}"), fitted(of), least);
             };
             expect("u", |o| o.row.err_linf, 1.45);
-            expect("gradient", |o| o.row.err_grad_linf, 0.95);
-            expect("the jump of the slope", |o| o.report.errors.as_ref()?.jump_linf, 0.7);
+            if !varying {
+                expect("gradient", |o| o.row.err_grad_linf, 0.95);
+                expect("the jump of the slope", |o| o.report.errors.as_ref()?.jump_linf, 0.7);
+            }
         }
     }
 }

@@ -10,8 +10,12 @@ use crate::particle_difference::frame::Frame;
 /// Least distance of two points of an interface, over the spacing of nodes.
 const SEPARATION: f64 = 0.8;
 
-/// How far points are from one between which they interpolate, over the spacing: two on either side along a curve.
-const REACH: f64 = 2.2;
+/// The same where u is prescribed: its value at a point sees an average of the jump over a support, and nothing would
+/// determine a jump that changes sign from point to point within it.
+const WIDE_SEPARATION: f64 = 2.5;
+
+/// How far points are from one between which they interpolate, over their distance: two on either side along a curve.
+const REACH: f64 = 2.75;
 
 /// Cosine between normals below which two points are on different legs of a corner.
 const SAME_LEG: f64 = 0.8;
@@ -33,6 +37,14 @@ pub(super) struct InterfacePoints<const D: usize> {
     pub(super) list: Vec<Point<D>>,
 }
 
+/// Distance of points on the interface between two regions, over the spacing.
+pub(super) fn separation<const D: usize>(problem: &Problem<'_, D>, between: &[u16; 2]) -> f64 {
+    match problem.jump_between(between[0], between[1]) {
+        Some((jump, _)) if jump.prescribed.is_some() => WIDE_SEPARATION,
+        _ => SEPARATION,
+    }
+}
+
 impl<const D: usize> InterfacePoints<D> {
     /// The feet of the nodes near interfaces, in the order of the nodes, thinned to a spacing.
     pub(super) fn new(problem: &Problem<'_, D>, feet: &Feet<D>) -> Self {
@@ -47,7 +59,7 @@ impl<const D: usize> InterfacePoints<D> {
                     between: [own.min(foot.beyond), own.max(foot.beyond)],
                     node,
                 };
-                let least = SEPARATION * problem.cloud.spacing()[node];
+                let least = separation(problem, &point.between) * problem.cloud.spacing()[node];
                 if list
                     .iter()
                     .all(|p| !p.is_on(&point.between, &point.normal) || apart(p, &point.at) >= least)
@@ -74,11 +86,11 @@ impl<const D: usize> InterfacePoints<D> {
         between: [u16; 2],
         at: &[f64; D],
         normal: &[f64; D],
-        spacing: f64,
+        [separation, spacing]: [f64; 2],
         factor: f64,
         out: &mut Vec<(u32, f64)>,
     ) {
-        let reach = REACH * spacing;
+        let reach = REACH * separation * spacing;
         let near: Vec<(u32, f64)> = (0..)
             .zip(&self.list)
             .filter(|(_, p)| p.is_on(&between, normal))

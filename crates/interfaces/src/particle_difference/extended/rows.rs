@@ -2,7 +2,7 @@
 
 use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit, StencilError};
 
-use super::points::InterfacePoints;
+use super::points::{InterfacePoints, separation};
 use crate::local::enlarged_support;
 use crate::particle_difference::feet::{Feet, Foot, may_jump};
 use crate::particle_difference::leg::GRADIENT_STEP;
@@ -280,7 +280,8 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             let normal = foot.at.normal.map(|n| sign * n);
             let between = [centre.region.min(label), centre.region.max(label)];
             let h = problem.cloud.spacing()[centre.node];
-            self.points.interpolate(between, &at, &normal, h, -factor * c * distance, &mut row.jumps);
+            let reach = [separation(problem, &between), h];
+            self.points.interpolate(between, &at, &normal, reach, -factor * c * distance, &mut row.jumps);
             if let Some((jump, sign)) = problem.jump_between(centre.region, label)
                 && let Some(value) = &jump.value
             {
