@@ -191,7 +191,7 @@ fn u_prescribed_on_an_interface_gives_the_jump_of_its_slope() {
     let plan = Plan::new(&Scene::parse(&scene(20), "cylinder.toml").unwrap()).unwrap();
     assert_eq!(plan.method.name, MethodName::ParticleDifferenceExtended);
     let (mut values, mut jumps) = (Vec::new(), Vec::new());
-    for nodes in [20, 40, 80] {
+    for nodes in [20, 40, 80, 160] {
         let report = solve_with(&scene(nodes), MethodName::Auto).unwrap().report;
         let errors = report.errors.expect("an exact solution");
         values.push((report.spacing, errors.linf));
