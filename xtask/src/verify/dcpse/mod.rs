@@ -58,7 +58,7 @@ pub(super) fn run(options: &Options) -> Study {
     }
     let mut stepped = Vec::new();
     if options.wants("dipole", CONSTRAINED.method) {
-        match pseudo::measure() {
+        match pseudo::measure(options.effort) {
             Ok(costs) => stepped = costs,
             Err(error) => runner.failures.push(format!("pseudo-time: {error}")),
         }
