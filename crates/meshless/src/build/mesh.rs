@@ -5,6 +5,9 @@ use meshless_freespace::{Centring, Mesh};
 use crate::Error;
 use crate::scene::{ParticlesSpec, Scene, ShapeSpec};
 
+/// Longest file of particles, in bytes: room for ten million of them.
+const MAX_BYTES: u64 = 1 << 29;
+
 /// Cells in each direction: as many as the spacing asks for.
 pub(crate) fn mesh_cells(scene: &Scene) -> Result<Vec<usize>, Error> {
     let Some(spacing) = scene.points.spacing.expr.as_constant() else {
@@ -31,12 +34,8 @@ pub(crate) fn free_mesh<const D: usize>(scene: &Scene, times: usize) -> Result<M
 
 /// Positions and strengths from a file.
 pub(crate) fn particles<const D: usize>(spec: &ParticlesSpec) -> Result<(Vec<[f64; D]>, Vec<f64>), Error> {
-    // Beside the scene, unless the path is absolute.
-    let path = spec.place.folder().join(&spec.file);
+    let (path, text) = spec.place.read_text_beside(&spec.file, MAX_BYTES)?;
     let wrong = |message: String, help: &str| Error::from(spec.place.error(message, help));
-    let text = std::fs::read_to_string(&path).map_err(|e| {
-        wrong(format!("cannot read {}: {e}", path.display()), "the path is relative to the scene")
-    })?;
     let (mut positions, mut strengths) = (Vec::new(), Vec::new());
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();

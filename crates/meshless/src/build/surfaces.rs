@@ -15,18 +15,8 @@ pub(super) fn surface(spec: &SurfaceSpec) -> Result<Arc<TriangleSurface>, Error>
     if let Some(known) = spec.loaded.get() {
         return Ok(known.clone());
     }
-    // Beside the scene, unless the path is absolute.
-    let path = spec.place.folder().join(&spec.file);
-    let wrong =
-        |what: String, help: &str| Error::from(spec.place.error(format!("{}: {what}", path.display()), help));
-    let unreadable =
-        |e: std::io::Error| wrong(format!("cannot be read: {e}"), "the path is relative to the scene");
-    let length = std::fs::metadata(&path).map_err(unreadable)?.len();
-    if length > MAX_BYTES {
-        return Err(wrong(format!("has {length} bytes, more than {MAX_BYTES}"), "simplify the surface"));
-    }
-    let bytes = std::fs::read(&path).map_err(unreadable)?;
-    let invalid = |e: GeometryError| wrong(e.to_string(), "");
+    let (path, bytes) = spec.place.read_beside(&spec.file, MAX_BYTES)?;
+    let invalid = |e: GeometryError| spec.place.error(format!("{}: {e}", path.display()), "");
     let triangles = read_stl(&bytes).map_err(invalid)?;
     let surface = TriangleSurface::new(&triangles, &spec.params).map_err(invalid)?;
     Ok(spec.loaded.get_or_init(|| Arc::new(surface)).clone())

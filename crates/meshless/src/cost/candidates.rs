@@ -53,11 +53,7 @@ fn all(scene: &Scene, plan: &Plan) -> Vec<Candidate> {
     if plan.effects.contains(&Effect::Slits) {
         return vec![of(ParticleDifference, None)];
     }
-    let jumps = plan
-        .effects
-        .iter()
-        .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
-    let mut all: Vec<Candidate> = if jumps {
+    let mut all: Vec<Candidate> = if plan.has_interface() {
         [GfdmHybrid, GfdmConservative, ParticleDifference, ImmersedInterface]
             .map(|name| of(name, None))
             .to_vec()

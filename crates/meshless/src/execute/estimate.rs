@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{Silent, Solved, solve_in};
 use crate::norms::ErrorNorms;
-use crate::plan::{Effect, MethodParams, Plan, Stage};
+use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::Estimate;
 use crate::scene::Scene;
 use crate::{Error, build};
@@ -107,20 +107,8 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
     differences
         .iter()
         .for_each(|&(measure, difference, value)| norms.add(measure, difference - shift, value));
-    let singular = plan.effects.contains(&Effect::Slits);
-    let smooth = !plan
-        .effects
-        .iter()
-        .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
-    let method = &plan.method.params;
-    // Interfaces from labels are known to a share of the spacing.
-    let order = match (singular || plan.runs(Stage::PhaseField), smooth) {
-        (true, _) => 1,
-        (_, true) => method.order(),
-        (_, false) => method.interface_order(),
-    };
     // Points from a file can only be thinned as they are.
     let nodes = [fine, &coarse].map(|solved| solved.discrete.cloud.len() as f64);
     let ratio = if scene.points.file.is_some() { (nodes[0] / nodes[1]).powf(1.0 / D as f64) } else { RATIO };
-    Ok(Estimate { l2: Some(norms.l2() / (ratio.powi(order as i32) - 1.0)), why_not: None })
+    Ok(Estimate { l2: Some(norms.l2() / (ratio.powi(plan.expected_order() as i32) - 1.0)), why_not: None })
 }

@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use super::{Checkpoint, Progress, Solution, execute_once};
-use crate::plan::{AccuracyPlan, Effect, Plan};
+use crate::plan::{AccuracyPlan, Plan};
 use crate::report::{AccuracyReport, Rung};
 use crate::scene::Scene;
 use crate::{Error, build};
@@ -84,20 +84,9 @@ pub(super) fn refine(
                 solution.report.accuracy.iter().flat_map(|a| &a.rungs).map(|r| r.seconds).sum();
             return Ok(solution);
         }
-        factor *= next_ratio(&rungs, nominal_order(plan), SHARE * goal.tolerance);
+        factor *= next_ratio(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance);
     }
     Err(unmet(scene, goal, &rungs, refused, None))
-}
-
-/// The order that the error of the plan's method falls at.
-fn nominal_order(plan: &Plan) -> f64 {
-    let jumps = plan
-        .effects
-        .iter()
-        .any(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump));
-    let params = &plan.method.params;
-    let order = if jumps { params.interface_order() } else { params.order() };
-    if plan.effects.contains(&Effect::Slits) { 1.0 } else { order as f64 }
 }
 
 /// The ratio of the next spacing to the last one.

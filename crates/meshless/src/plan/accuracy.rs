@@ -38,7 +38,6 @@ impl AccuracyPlan {
     /// Method and order for a scene that names no method.
     pub(super) fn choose(&self, scene: &Scene, survey: &Survey) -> Choice {
         let tolerance = self.tolerance;
-        let reached = |orders: &[(f64, usize)]| orders.iter().find(|o| tolerance >= o.0).map(|o| o.1);
         let choice = |name, order, why: &str| Choice {
             name,
             order: scene.method.order.or(order),
@@ -53,20 +52,23 @@ impl AccuracyPlan {
             );
         }
         if scene.time.is_none() {
-            let order = reached(SHARP_ORDERS[scene.dimension - 1]);
+            let order = self.order_of(SHARP_ORDERS[scene.dimension - 1]);
             return choice(MethodName::Sharp, order, "high order on both sides of interfaces");
         }
         if jumps {
             let why = "second order up to interfaces, also in time";
             return choice(MethodName::ParticleDifference, None, why);
         }
-        choice(MethodName::GfdmClassical, reached(&STENCIL_ORDERS), "stencils, also in time")
+        choice(MethodName::GfdmClassical, self.order_of(&STENCIL_ORDERS), "stencils, also in time")
     }
 
     /// The order of a method that the scene names without one.
     pub(super) fn order(&self, name: MethodName, dimension: usize) -> Option<usize> {
-        let orders = SHARP_ORDERS[dimension - 1];
-        let order = orders.iter().find(|o| self.tolerance >= o.0).map(|o| o.1);
-        order.filter(|_| name == MethodName::Sharp)
+        self.order_of(SHARP_ORDERS[dimension - 1]).filter(|_| name == MethodName::Sharp)
+    }
+
+    /// The first of the orders that serves the tolerance.
+    fn order_of(&self, orders: &[(f64, usize)]) -> Option<usize> {
+        orders.iter().find(|(down_to, _)| self.tolerance >= *down_to).map(|&(_, order)| order)
     }
 }

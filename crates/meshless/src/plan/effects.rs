@@ -52,6 +52,11 @@ pub enum Effect {
 }
 
 impl Effect {
+    /// Whether something jumps at an interface.
+    pub fn is_at_interface(&self) -> bool {
+        matches!(self, Self::DiffusivityJump { .. } | Self::ValueJump | Self::FluxJump)
+    }
+
     /// The name used in reports.
     pub fn name(&self) -> &'static str {
         match self {
@@ -143,7 +148,7 @@ impl Survey {
 
     /// Whether anything happens at an interface at all.
     pub(super) fn has_interface(&self) -> bool {
-        self.has(|e| matches!(e, Effect::DiffusivityJump { .. } | Effect::ValueJump | Effect::FluxJump))
+        self.has(Effect::is_at_interface)
     }
 }
 

@@ -163,6 +163,24 @@ impl Plan {
         self.stages.contains(&stage)
     }
 
+    /// Whether something jumps at an interface.
+    pub fn has_interface(&self) -> bool {
+        self.effects.iter().any(Effect::is_at_interface)
+    }
+
+    /// The order in the spacing at which the error falls, as far as the plan can promise it: one at slits, whose tips are
+    /// singular, and where interfaces are known from labels only, to a share of the spacing; else that of the method.
+    pub fn expected_order(&self) -> usize {
+        let params = &self.method.params;
+        if self.effects.contains(&Effect::Slits) || self.runs(Stage::PhaseField) {
+            1
+        } else if self.has_interface() {
+            params.interface_order()
+        } else {
+            params.order()
+        }
+    }
+
     /// The same plan without what a coarser companion solve does not need.
     pub(crate) fn companion(&self) -> Self {
         let mut plan = self.clone();

@@ -72,10 +72,9 @@ pub(super) fn points(
     Ok(PointsSpec {
         file: None,
         spacing: match (table.get("spacing"), first()) {
+            (Some(value), _) => value.expression()?.check_positive()?,
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
-            (value, _) => {
-                value.map_or_else(|| table.require("spacing"), Ok)?.expression()?.check_positive()?
-            }
+            (None, None) => return Err(table.missing("spacing", "")),
         },
         layout: match table.get("layout") {
             Some(value) => value.one_of(&LAYOUTS)?,

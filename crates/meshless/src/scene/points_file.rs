@@ -40,18 +40,9 @@ pub(crate) struct FilePoints<const D: usize> {
 }
 
 impl PointsFileSpec {
-    /// What stands in the file.
-    pub(crate) fn text(&self) -> Result<String, SceneError> {
-        let path = self.place.folder().join(&self.path);
-        let unreadable = |why: String| {
-            let message = format!("cannot read {}: {why}", path.display());
-            self.place.error(message, "the path is relative to the scene")
-        };
-        let length = std::fs::metadata(&path).map_err(|e| unreadable(e.to_string()))?.len();
-        if length > MAX_BYTES {
-            return Err(unreadable(format!("it has {length} bytes, more than {MAX_BYTES}")));
-        }
-        std::fs::read_to_string(&path).map_err(|e| unreadable(e.to_string()))
+    /// The file and what stands in it.
+    pub(crate) fn text(&self) -> Result<(PathBuf, String), SceneError> {
+        self.place.read_text_beside(&self.path, MAX_BYTES)
     }
 
     /// Reads the file; `regions` are those that it labels its points with, none where it has coordinates only.
@@ -59,7 +50,7 @@ impl PointsFileSpec {
         &self,
         regions: Option<&[RegionSpec]>,
     ) -> Result<FilePoints<D>, SceneError> {
-        let (path, text) = (self.place.folder().join(&self.path), self.text()?);
+        let (path, text) = self.text()?;
         let source = Arc::new(Source::new(&path.display().to_string(), &text));
         let names = regions.map(Names::new);
         let mut file = FilePoints { points: Vec::new(), labels: None, lines: Vec::new(), source };

@@ -112,6 +112,38 @@ impl Place {
         Path::new(&self.source.file).parent().map(Path::to_path_buf).unwrap_or_default()
     }
 
+    /// A file that is named here, beside the scene unless its path is absolute, and its bytes.
+    pub(crate) fn read_beside(
+        &self,
+        file: impl AsRef<Path>,
+        max_bytes: u64,
+    ) -> Result<(PathBuf, Vec<u8>), SceneError> {
+        let path = self.folder().join(file);
+        let wrong = |what: String, help: &str| self.error(format!("{} {what}", path.display()), help);
+        let unreadable =
+            |e: std::io::Error| wrong(format!("cannot be read: {e}"), "the path is relative to the scene");
+        let length = std::fs::metadata(&path).map_err(unreadable)?.len();
+        if length > max_bytes {
+            return Err(wrong(format!("has {length} bytes, more than {max_bytes}"), "give a smaller file"));
+        }
+        let bytes = std::fs::read(&path).map_err(unreadable)?;
+        Ok((path, bytes))
+    }
+
+    /// The same for text in UTF-8.
+    pub(crate) fn read_text_beside(
+        &self,
+        file: impl AsRef<Path>,
+        max_bytes: u64,
+    ) -> Result<(PathBuf, String), SceneError> {
+        let (path, bytes) = self.read_beside(file, max_bytes)?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let byte = e.utf8_error().valid_up_to();
+            self.error(format!("{} is not UTF-8 text: byte {byte} is wrong", path.display()), "")
+        })?;
+        Ok((path, text))
+    }
+
     /// Line and column, both from 1; the column counts characters.
     pub fn position(&self) -> (usize, usize) {
         let (line, column, _) = self.source.locate(self.span.start);

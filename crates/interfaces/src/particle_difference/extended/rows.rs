@@ -85,15 +85,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             }
         };
         let centre = Centre { at: x, region: problem.labels[i], node: i, feet: self.feet.of(i) };
-        let mut row = ExtendedRow::default();
-        let lists = problem.supports.lists;
-        let jump = match self.apply(&centre, lists.of(i), &functional, -size, scratch, &mut row) {
-            Ok(jump) => jump,
-            Err(_) => {
-                row = ExtendedRow { enlarged: true, ..ExtendedRow::default() };
-                self.apply(&centre, &enlarged_support(problem, i), &functional, -size, scratch, &mut row)?
-            }
-        };
+        let (mut row, jump) = self.fitted(&centre, &functional, -size, scratch)?;
         row_sum *= size;
         rhs = size * rhs - jump;
         row.nodes.retain(|&(j, _)| j as usize != i);
@@ -137,15 +129,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         let mut gradient = [0.0; D];
         for axis in 0..D {
             let functional = Functional::Directional(std::array::from_fn(|k| f64::from(u8::from(k == axis))));
-            let mut row = ExtendedRow::default();
-            let near = problem.supports.lists.of(i);
-            let given = match self.apply(&centre, near, &functional, 1.0, scratch, &mut row) {
-                Ok(given) => given,
-                Err(_) => {
-                    row = ExtendedRow::default();
-                    self.apply(&centre, &enlarged_support(problem, i), &functional, 1.0, scratch, &mut row)?
-                }
-            };
+            let (row, given) = self.fitted(&centre, &functional, 1.0, scratch)?;
             let of_nodes: f64 = row.nodes.iter().map(|&(j, c)| c * (u[j as usize] - u[i])).sum();
             gradient[axis] =
                 given + of_nodes + row.jumps.iter().map(|&(k, c)| c * jumps[k as usize]).sum::<f64>();
@@ -160,21 +144,12 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         value: f64,
         scratch: &mut Scratch<D>,
     ) -> Result<ExtendedRow, MethodError> {
-        let (problem, point) = (self.problem, self.points.list[k]);
+        let point = self.points.list[k];
         let [first, second] = point.between;
         let at = meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 };
         let feet = [Foot { beyond: second, at }];
         let centre = Centre { at: point.at, region: first, node: point.node, feet: &feet };
-        let near = || [problem.supports.lists.of(point.node), &[point.node as u32]].concat();
-        let wide = || [&enlarged_support(problem, point.node)[..], &[point.node as u32]].concat();
-        let mut row = ExtendedRow::default();
-        let given = match self.apply(&centre, &near(), &Functional::Value, 1.0, scratch, &mut row) {
-            Ok(given) => given,
-            Err(_) => {
-                row = ExtendedRow::default();
-                self.apply(&centre, &wide(), &Functional::Value, 1.0, scratch, &mut row)?
-            }
-        };
+        let (mut row, given) = self.fitted(&centre, &Functional::Value, 1.0, scratch)?;
         row.rhs = value - given;
         row.row_sum = row.nodes.iter().map(|(_, c)| c).sum();
         Ok(row)
@@ -194,8 +169,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         let flux = problem.jump_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
         let h = problem.cloud.spacing()[point.node];
         let sum = eta[0] + eta[1];
-        let mut row =
-            ExtendedRow { rhs: h * flux.map_or(0.0, |g| g.at(&point.at)) / sum, ..Default::default() };
+        let mut row = ExtendedRow::default();
         let factor = h * (eta[1] - eta[0]) / sum;
         if factor != 0.0 {
             let foot = Foot {
@@ -204,25 +178,36 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             };
             let feet = [foot];
             let centre = Centre { at: point.at, region: first, node: point.node, feet: &feet };
-            let mut neighbors = problem.supports.lists.of(point.node).to_vec();
-            neighbors.push(point.node as u32);
             let slope = Functional::Directional(point.normal);
-            let jump = match self.apply(&centre, &neighbors, &slope, factor, scratch, &mut row) {
-                Ok(jump) => jump,
-                Err(_) => {
-                    let mut wide = enlarged_support(problem, point.node);
-                    wide.push(point.node as u32);
-                    let rhs = row.rhs;
-                    row = ExtendedRow { rhs, ..ExtendedRow::default() };
-                    self.apply(&centre, &wide, &slope, factor, scratch, &mut row)?
-                }
-            };
-            row.rhs -= jump;
+            let (fitted, given) = self.fitted(&centre, &slope, factor, scratch)?;
+            row = ExtendedRow { rhs: -given, ..fitted };
             // The coefficients of a derivative add up to nothing, so values and differences are the same.
             row.row_sum = row.nodes.iter().map(|(_, c)| c).sum();
         }
+        row.rhs += h * flux.map_or(0.0, |g| g.at(&point.at)) / sum;
         row.jumps.push((k as u32, h * eta[1] / sum));
         Ok(row)
+    }
+
+    /// `factor` times an operator on the polynomial of the centre's side, over the support of its node or, where that does
+    /// not determine it, over an enlarged one; and what is given of it.
+    fn fitted(
+        &self,
+        centre: &Centre<'_, D>,
+        functional: &Functional<D>,
+        factor: f64,
+        scratch: &mut Scratch<D>,
+    ) -> Result<(ExtendedRow, f64), MethodError> {
+        let (problem, node) = (self.problem, centre.node);
+        let mut row = ExtendedRow::default();
+        let near = problem.supports.lists.of(node);
+        if let Ok(given) = self.apply(centre, near, functional, factor, scratch, &mut row) {
+            return Ok((row, given));
+        }
+        row = ExtendedRow { enlarged: true, ..ExtendedRow::default() };
+        let given =
+            self.apply(centre, &enlarged_support(problem, node), functional, factor, scratch, &mut row)?;
+        Ok((row, given))
     }
 
     /// Adds `factor` times an operator on the polynomial of the centre's side to a row; returns what is given of it.
@@ -245,9 +230,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             let label = labels[j as usize];
             same(label) || foot_towards(label).is_some()
         }));
-        if points[centre.node] == *x {
-            nodes.push(centre.node as u32);
-        }
+        nodes.push(centre.node as u32);
         offsets.clear();
         weights.clear();
         let mut radius = radii[centre.node];

@@ -84,7 +84,7 @@ impl Checkpoint {
 fn digest(scene: &Scene, plan: &Plan) -> String {
     let place = &scene.points.place;
     // A file of points was read a moment ago.
-    let points = scene.points.file.as_ref().and_then(|file| file.text().ok()).unwrap_or_default();
+    let points = scene.points.file.as_ref().and_then(|file| file.text().ok()).unwrap_or_default().1;
     let parts = format!("{}\n{}\n{:?}{points}", place.source_text(), scene.points.spacing.text, plan.method);
     // FNV-1a, 64 bit.
     let hash = parts

@@ -121,7 +121,7 @@ fn what_is_wrong_in_the_file_is_said_with_its_line() {
     assert!(said("# nothing\n").contains("has no points"));
     assert!(said(&good.replace("7.0", "tissue")).contains("no node lies in the region \"bone\""));
     let gone = Scene::parse(SCAN, "nowhere/scene.toml").expect("it parses");
-    assert!(Plan::new(&gone).expect_err("no file").to_string().contains("cannot read"));
+    assert!(Plan::new(&gone).expect_err("no file").to_string().contains("cannot be read"));
     let half: String =
         good.lines().filter(|l| l.starts_with("0.0") || l.starts_with("0.1")).collect::<Vec<_>>().join("\n");
     assert!(said(&half.replacen("7.0", "tissue", 1)).contains("must fill the domain"));
