@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use meshless::plan::Plan;
 use meshless::report::Report;
 use meshless::scene::Scene;
-use meshless::{Overrides, Silent, execute};
+use meshless::{METHODS, Overrides, Silent, execute};
 
 /// A scene, the spacing that it is solved with here, and a bound of its relative L2 error where it has a closed form.
 struct Example {
@@ -197,4 +197,24 @@ fn every_feature_of_the_format_is_shown() {
     };
     let missing: Vec<&&str> = FEATURES.iter().filter(|f| !shown(f)).collect();
     assert!(missing.is_empty(), "no example has {missing:?}");
+}
+
+/// No method panics on an example that was not made for it, and none lacks neighbours there.
+#[test]
+fn every_method_answers_on_examples_that_were_not_made_for_it() {
+    for (name, spacing) in [("wall", "0.008"), ("smooth", "0.08"), ("l_shape", "0.08"), ("ball", "0.2")] {
+        for method in METHODS.iter().map(|m| m.name).filter(|name| *name != "free-space") {
+            let mut scene = scene(name);
+            let (method, spacing) = (Some(method), Some(spacing));
+            Overrides { method, spacing, ..Overrides::default() }.apply(&mut scene).expect("overrides");
+            let outcome = Plan::new(&scene).and_then(|plan| execute(&scene, &plan, &mut Silent));
+            match outcome.map(|solution| solution.report.errors.map_or(f64::NAN, |errors| errors.l2)) {
+                Ok(l2) => assert!(l2 < 1.0, "{name} by {method:?}: {l2:.1e}"),
+                Err(error) => {
+                    let lacks = error.to_string().contains("no stencil");
+                    assert!(!lacks, "{name} by {method:?}: {error}");
+                }
+            }
+        }
+    }
 }

@@ -50,6 +50,7 @@ mod error;
 mod field;
 pub mod gfdm;
 mod gradient;
+mod instances;
 mod local;
 mod method;
 pub mod particle_difference;
@@ -67,6 +68,8 @@ pub use adjacency::adjacent_pairs;
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
 pub use error::MethodError;
 pub use field::{Field, ScalarField};
+#[doc(hidden)]
+pub use instances::instances;
 pub use method::{Counts, Discretization, InterfacePoint, Method, RowKind, SplitRows};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
 pub use row_report::RowReport;

@@ -28,7 +28,7 @@ impl<const D: usize> NodeFit<D> {
             fit: self.fit.scratch(max_neighbors + 1),
             offsets: Vec::with_capacity(max_neighbors + 1),
             weights: Vec::with_capacity(max_neighbors + 1),
-            coefficients: vec![0.0; max_neighbors + 1],
+            coefficients: Vec::with_capacity(max_neighbors + 1),
         }
     }
 
@@ -54,6 +54,8 @@ impl<const D: usize> NodeFit<D> {
             scratch.weights.push(self.weight.value(distance, radius[i], radius[j]));
             reach = reach.max(distance);
         }
+        // An enlarged support may be longer than all others.
+        scratch.coefficients.resize(scratch.offsets.len(), 0.0);
         self.fit.factor(&scratch.offsets, &scratch.weights, reach, &mut scratch.fit)?;
         Ok(())
     }

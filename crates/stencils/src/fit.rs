@@ -223,7 +223,9 @@ impl<const D: usize> LocalFit<D> {
         // The null space of K is W times the complement of the columns of W K^T.
         scratch.qr.complement(centre, out);
         let remainder = out[centre];
-        if remainder <= REPRODUCTION_TOLERANCE {
+        // The square of the length of what is left of the unit vector, which is known to round-off. It is small wherever
+        // the centre outweighs the other points.
+        if remainder.sqrt() <= REPRODUCTION_TOLERANCE {
             let (rank, monomials) = (scratch.qr.rank(), self.monomials.count());
             return Err(StencilError::Unresolvable { points, monomials, rank, remainder });
         }
