@@ -2,6 +2,7 @@
 
 mod ball;
 mod circle;
+mod graded;
 mod manufactured;
 mod quadrants;
 mod rings;
@@ -9,6 +10,7 @@ mod shapes;
 
 pub use ball::ball_mode;
 pub use circle::circle_mode;
+pub use graded::graded;
 pub use quadrants::quadrants;
 pub use rings::rings;
 pub use shapes::{ellipse, pair, star, torus};

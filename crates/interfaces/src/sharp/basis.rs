@@ -5,7 +5,7 @@ use meshless_stencils::Monomials;
 use super::harmonic;
 use super::params::MAX_ORDER;
 
-/// One more than the highest degree of a basis: the order, and what the particular part of the harmonic form has more.
+/// One more than the highest degree of a basis: the order, and what particular parts and their samples have more.
 const POWERS: usize = MAX_ORDER[0] + 5;
 
 /// Values of all polynomials of a basis at one point.

@@ -107,7 +107,7 @@ impl<const D: usize> Fit<D> {
     /// Value and gradient (in z) of the own polynomial at `z`, after [`Fit::solve`].
     pub(super) fn own(&mut self, maker: &Maker<'_, D>, z: &[f64; D]) -> (f64, [f64; D]) {
         let mut jet = std::mem::take(&mut self.parts.jet);
-        self.parts.evaluate(maker, 0, z, &mut jet);
+        self.parts.evaluate(maker, 0, z, true, &mut jet);
         let own = &self.z[..jet.values.len()];
         let value: f64 = own.iter().zip(&jet.values).map(|(c, v)| c * v).sum();
         let slope = |axis: usize| own.iter().zip(&jet.gradients).map(|(c, g)| c * g[axis]).sum::<f64>();
@@ -140,9 +140,9 @@ impl<const D: usize> Fit<D> {
 
     fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         let boundary: usize = stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum();
-        let at_nodes = stencil.part_of.iter().filter(|&&part| !self.parts.is_harmonic(part)).count();
+        let at_nodes = stencil.part_of.iter().filter(|&&part| self.parts.has_rows(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
-            2 + sides.iter().filter(|&&part| !self.parts.is_harmonic(part)).count()
+            2 + sides.iter().filter(|&&part| self.parts.has_rows(part)).count()
         };
         let interface: usize = stencil.points.iter().map(at_points).sum();
         let columns = self.parts.columns();
@@ -184,14 +184,15 @@ impl<const D: usize> Fit<D> {
         for (row, (&j, &part)) in stencil.nodes.iter().zip(&stencil.part_of).enumerate() {
             let j = j as usize;
             let z: [f64; D] = std::array::from_fn(|k| (points[j][k] - center[k]) / radius);
-            self.parts.evaluate(maker, part, &z, &mut jet);
+            let slopes = !maker.boundary_rows[j].is_empty();
+            self.parts.evaluate(maker, part, &z, slopes, &mut jet);
             let weight = (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
             self.weights.push(weight);
             let mut given = Given::default();
             self.put(row, part, &jet, &Row::of_value(weight), &mut given);
             self.given[row] = given;
             let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
-            if !self.parts.is_harmonic(part) {
+            if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
                 self.equation(maker, part, &jet, &maker.slope(j), radius, eta * scale, source);
             }
@@ -250,12 +251,12 @@ impl<const D: usize> Fit<D> {
             let first = self.given.len();
             self.given.resize(first + 2, Given::default());
             for (s, sign) in [-1.0, 1.0].into_iter().enumerate() {
-                self.parts.evaluate(maker, places[s], &z, &mut jet);
+                self.parts.evaluate(maker, places[s], &z, true, &mut jet);
                 self.put(first, places[s], &jet, &Row::of_value(sign * weight * scales[s]), &mut value);
                 let strength = sign * weight * conductance[s] / largest;
                 let slope = Row { gradient: point.normal.map(|n| strength * n), ..Row::of_value(0.0) };
                 self.put(first + 1, places[s], &jet, &slope, &mut flux);
-                if !self.parts.is_harmonic(places[s]) {
+                if self.parts.has_rows(places[s]) {
                     let side = &point.sides[s];
                     self.equation(maker, places[s], &jet, &side.slope, radius, conductance[s], side.source);
                 }

@@ -3,6 +3,7 @@
 use meshless_neighbors::CellList;
 use rayon::prelude::*;
 
+use super::adapted::Adapted;
 use super::basis::Basis;
 use super::fit::{Combination, Fit};
 use super::interface::InterfacePoints;
@@ -37,12 +38,12 @@ pub(super) struct BoundaryRow<const D: usize> {
 pub(super) struct Maker<'a, const D: usize> {
     pub(super) problem: &'a Problem<'a, D>,
     pub(super) params: SharpParams,
-    /// Which regions are treated in the harmonic form, by label.
-    pub(super) harmonic: Vec<bool>,
-    /// Particular parts of sources in these regions; `None` where there is nothing to fit.
+    /// Particular parts of sources where the diffusivity is constant; `None` where there is nothing to fit.
     pub(super) particular: Option<Particular<D>>,
-    complete_basis: Basis<D>,
-    harmonic_basis: Basis<D>,
+    /// Solutions where it varies; `None` where it nowhere does, and in the general form.
+    pub(super) adapted: Option<Adapted<D>>,
+    pub(super) complete_basis: Basis<D>,
+    pub(super) harmonic_basis: Basis<D>,
     pub(super) unknowns: &'a Unknowns,
     pub(super) interfaces: &'a InterfacePoints<D>,
     pub(super) boundary_rows: Vec<Vec<BoundaryRow<D>>>,
@@ -84,18 +85,20 @@ impl<'a, const D: usize> Maker<'a, D> {
         interfaces: &'a InterfacePoints<D>,
     ) -> Result<Self, MethodError> {
         let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
-        let is_harmonic =
-            |m: &Material<D>| params.form == Form::Harmonic && m.diffusivity.as_constant().is_some();
+        let is_constant = |m: &Material<D>| m.diffusivity.as_constant().is_some();
         let is_fitted =
-            |m: &Material<D>| is_harmonic(m) && m.source.as_ref().is_some_and(|f| f.as_constant().is_none());
-        let fitted = problem.materials.iter().any(is_fitted);
+            |m: &Material<D>| is_constant(m) && m.source.as_ref().is_some_and(|f| f.as_constant().is_none());
+        let trefftz = params.form == Form::Trefftz;
+        let fitted = trefftz && problem.materials.iter().any(is_fitted);
+        let adapted = trefftz && !problem.materials.iter().all(is_constant);
+        let harmonic_basis = Basis::harmonic(params.degree());
         Ok(Self {
             problem,
             params,
-            harmonic: problem.materials.iter().map(is_harmonic).collect(),
             particular: fitted.then(|| Particular::new(params.source_degree())),
+            adapted: adapted.then(|| Adapted::new(&harmonic_basis, params.source_degree())),
             complete_basis: Basis::complete(params.degree()),
-            harmonic_basis: Basis::harmonic(params.degree()),
+            harmonic_basis,
             unknowns,
             interfaces,
             boundary_rows: boundary_rows(problem)?,
@@ -103,11 +106,6 @@ impl<'a, const D: usize> Maker<'a, D> {
             nodes,
             points: CellList::new(&interfaces.places, 3.0 * widest)?,
         })
-    }
-
-    /// The basis of a form.
-    pub(super) fn basis_of(&self, harmonic: bool) -> &Basis<D> {
-        if harmonic { &self.harmonic_basis } else { &self.complete_basis }
     }
 
     /// Gradient of the logarithm of the diffusivity at a node.

@@ -5,6 +5,7 @@
 //! its value is what the fit to all others predicts. Stiff regions that touch no prescribed value have a constant
 //! of their own, and their nodes' unknowns carry the flux. See `docs/sharp.md`.
 
+mod adapted;
 mod basis;
 mod fit;
 mod harmonic;

@@ -17,7 +17,7 @@ const NODES_1D_BEYOND: usize = 3;
 /// `docs/sharp.md`.
 const LEAST_DEGREE: usize = 3;
 
-/// Degrees that the polynomials of sources have beyond those of the order, in the harmonic form: a particular part that
+/// Degrees that the polynomials of sources have beyond those of the order, in Trefftz's form: a particular part that
 /// is better than the rest makes the form as accurate as the general one, whose equation rows see the source as well.
 const SOURCE_DEGREES_BEYOND: usize = 2;
 
@@ -26,9 +26,9 @@ const SOURCE_DEGREES_BEYOND: usize = 2;
 pub enum Form {
     /// As rows, with all polynomials up to the order; for any diffusivity.
     General,
-    /// Solved beforehand where the diffusivity of a region is constant: harmonic polynomials and a particular part;
-    /// the general form where it varies.
-    Harmonic,
+    /// Solved beforehand: harmonic polynomials and a particular part where the diffusivity of a region is constant, and
+    /// what solves the equation up to the degree of the fit where it varies.
+    Trefftz,
 }
 
 /// Parameters of the sharp method.
@@ -46,7 +46,7 @@ pub struct SharpParams {
     pub equation_weight: f64,
     /// How the equation enters a fit.
     pub form: Form,
-    /// Degree of the polynomials that sources are fitted by in the harmonic form; `None` for one that suits the order.
+    /// Degree of the polynomials that sources are fitted by in Trefftz's form; `None` for one that suits the order.
     pub source_degree: Option<usize>,
 }
 
@@ -58,7 +58,7 @@ impl Default for SharpParams {
             nodes: None,
             jump_weight: 10.0,
             equation_weight: 100.0,
-            form: Form::Harmonic,
+            form: Form::Trefftz,
             source_degree: None,
         }
     }
@@ -70,7 +70,7 @@ impl SharpParams {
         self.degree.unwrap_or(self.order.max(LEAST_DEGREE))
     }
 
-    /// Degree of the polynomials that sources are fitted by in the harmonic form.
+    /// Degree of the polynomials that sources are fitted by in Trefftz's form.
     pub fn source_degree(&self) -> usize {
         self.source_degree.unwrap_or(self.degree() - 2 + SOURCE_DEGREES_BEYOND)
     }

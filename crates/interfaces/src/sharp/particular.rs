@@ -26,7 +26,7 @@ impl<const D: usize> Particular<D> {
     /// For right-hand sides that are fitted by polynomials of `degree`; P has two degrees more.
     pub(super) fn new(degree: usize) -> Self {
         let (right, basis) = (Basis::<D>::complete(degree), Basis::<D>::complete(degree + 2));
-        let samples = samples(SAMPLES_PER_COEFFICIENT * right.len());
+        let samples = samples(right.len());
         let fit = pseudo_inverse(&right, &samples);
         let inverse = inverse_laplacian(&right, &basis);
         let (count, n) = (right.len(), samples.len());
@@ -50,8 +50,10 @@ impl<const D: usize> Particular<D> {
     }
 }
 
-/// Evenly scattered points of the unit ball, denser towards its surface, where polynomials are hardest to hold.
-fn samples<const D: usize>(count: usize) -> Vec<[f64; D]> {
+/// Points of the unit ball for polynomials of so many coefficients: evenly scattered, denser towards its surface, where
+/// polynomials are hardest to hold.
+pub(super) fn samples<const D: usize>(coefficients: usize) -> Vec<[f64; D]> {
+    let count = SAMPLES_PER_COEFFICIENT * coefficients;
     let mut points = Vec::with_capacity(count);
     let mut index = 0.0;
     while points.len() < count {
@@ -67,7 +69,7 @@ fn samples<const D: usize>(count: usize) -> Vec<[f64; D]> {
 }
 
 /// Rows: the coefficients of the least-squares polynomial; columns: the samples.
-fn pseudo_inverse<const D: usize>(basis: &Basis<D>, samples: &[[f64; D]]) -> Vec<f64> {
+pub(super) fn pseudo_inverse<const D: usize>(basis: &Basis<D>, samples: &[[f64; D]]) -> Vec<f64> {
     let mut qr = Qr::default();
     qr.resize(samples.len(), basis.len());
     let mut jet = Jet::default();
@@ -81,7 +83,7 @@ fn pseudo_inverse<const D: usize>(basis: &Basis<D>, samples: &[[f64; D]]) -> Vec
 }
 
 /// Rows: the coefficients of P of least norm; columns: those of `lap P`.
-fn inverse_laplacian<const D: usize>(right: &Basis<D>, basis: &Basis<D>) -> Vec<f64> {
+pub(super) fn inverse_laplacian<const D: usize>(right: &Basis<D>, basis: &Basis<D>) -> Vec<f64> {
     let (Basis::Complete { exponents: from, .. }, Basis::Complete { exponents: to, .. }) = (basis, right)
     else {
         return Vec::new();
@@ -141,7 +143,7 @@ mod tests {
 
     #[test]
     fn samples_lie_in_the_ball() {
-        let points = samples::<3>(200);
+        let points = samples::<3>(70);
         assert!(points.iter().all(|x| x.iter().map(|x| x * x).sum::<f64>() <= 1.0 + 1e-12));
     }
 }

@@ -1,8 +1,11 @@
 //! The polynomials of a stencil, one a part of a region: their bases, columns and particular parts.
 
+use super::adapted;
 use super::basis::Jet;
 use super::maker::Maker;
+use super::params::Form;
 use super::stencil::Stencil;
+use crate::{Field, Material};
 
 /// What a row does to a polynomial in z: factors of its value, its gradient and its Laplacian.
 #[derive(Debug, Clone, Copy)]
@@ -36,11 +39,10 @@ impl<const D: usize> Row<D> {
     }
 }
 
-/// The particular part of a polynomial.
-#[derive(Debug, Clone, Default)]
+/// The particular part of a harmonic polynomial.
+#[derive(Debug, Clone)]
 enum Source {
-    /// There is no source, or the equation is in rows.
-    #[default]
+    /// There is no source.
     None,
     /// The same source everywhere: `-f |z|^2 R^2 / (2 D eta s)`.
     Constant(f64),
@@ -48,14 +50,28 @@ enum Source {
     Fitted(Vec<f64>),
 }
 
+/// How the equation enters the polynomial of a part.
+#[derive(Debug, Clone, Default)]
+enum Equation {
+    /// As rows.
+    #[default]
+    Rows,
+    /// The diffusivity is constant: harmonic polynomials and a particular part.
+    Harmonic {
+        source: Source,
+        /// `-R^2 / (2 D eta s)`: the particular part of a source of 1 over `|z|^2`.
+        unit: f64,
+    },
+    /// It varies: coefficients of what each harmonic polynomial lacks to solve the equation, of the particular part of the
+    /// source, and of that of a source of 1.
+    Adapted(Vec<f64>),
+}
+
 /// The polynomial of one part.
 #[derive(Debug, Clone, Default)]
 struct Part {
-    harmonic: bool,
+    equation: Equation,
     first_column: usize,
-    source: Source,
-    /// `-R^2 / (2 D eta s)` in the harmonic form, 0 else: the particular part of a source of 1 over `|z|^2`.
-    unit: f64,
 }
 
 /// The polynomials of a stencil.
@@ -69,57 +85,102 @@ pub(super) struct Parts<const D: usize> {
     z: Vec<f64>,
     samples: Vec<[f64; D]>,
     values: Vec<f64>,
+    eta: Vec<f64>,
+    unit: Vec<f64>,
+    adapted: adapted::Scratch,
 }
 
 impl<const D: usize> Parts<D> {
-    /// Chooses the form of every part of a stencil and makes the particular parts.
+    /// Chooses the form of every part of a stencil and makes what solves its equation.
     pub(super) fn prepare(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         self.parts.resize_with(stencil.parts.len(), Part::default);
         self.columns = 0;
         for place in 0..stencil.parts.len() {
             let part = stencil.parts[place] as usize;
-            let label = maker.unknowns.label[part] as usize;
-            let mut harmonic = maker.harmonic[label];
-            let (mut source, mut unit) = (Source::None, 0.0);
-            if let (true, Some(eta)) = (harmonic, maker.problem.materials[label].diffusivity.as_constant()) {
-                let response = -stencil.radius * stencil.radius / (eta * maker.unknowns.scale[part]);
-                unit = response / (2 * D) as f64;
-                match self.particular_part(maker, stencil, label, response) {
-                    Some(found) => source = found,
-                    // The source is not a number somewhere near: rows see it at nodes of its own region only.
-                    None => (harmonic, unit) = (false, 0.0),
-                }
-            }
-            self.parts[place] = Part { harmonic, first_column: self.columns, source, unit };
-            self.columns += maker.basis_of(harmonic).len();
+            let material = &maker.problem.materials[maker.unknowns.label[part] as usize];
+            let response = -stencil.radius * stencil.radius / maker.unknowns.scale[part];
+            // Where diffusivity or source are no numbers somewhere near, rows see them at nodes of their own region only.
+            let solved = match (maker.params.form, material.diffusivity.as_constant()) {
+                (Form::General, _) => None,
+                (Form::Trefftz, Some(eta)) => self.harmonic(maker, stencil, material, response / eta),
+                (Form::Trefftz, None) => self.adapted(maker, stencil, material, response),
+            };
+            let first_column = self.columns;
+            let basis = if solved.is_some() { &maker.harmonic_basis } else { &maker.complete_basis };
+            self.columns += basis.len();
+            self.parts[place] = Part { equation: solved.unwrap_or_default(), first_column };
         }
     }
 
-    fn particular_part(
+    /// Writes a field at samples of the stencil's ball to `values`; `None` where it is not a number somewhere.
+    fn sample(
         &mut self,
-        maker: &Maker<'_, D>,
         stencil: &Stencil<D>,
-        label: usize,
-        response: f64,
-    ) -> Option<Source> {
-        let Some(field) = &maker.problem.materials[label].source else { return Some(Source::None) };
-        if let Some(f) = field.as_constant() {
-            return Some(Source::Constant(f));
-        }
-        let particular = maker.particular.as_ref()?;
+        samples: &[[f64; D]],
+        field: &Field<D>,
+        values: &mut Vec<f64>,
+    ) -> Option<()> {
         let center = &stencil.center;
         let place = |z: &[f64; D]| std::array::from_fn(|k| center[k] + stencil.radius * z[k]);
         self.samples.clear();
-        self.samples.extend(particular.samples.iter().map(place));
-        self.values.resize(self.samples.len(), 0.0);
-        field.eval(&self.samples, &mut self.values);
-        if self.values.iter().any(|f| !f.is_finite()) {
-            return None;
+        self.samples.extend(samples.iter().map(place));
+        values.resize(samples.len(), 0.0);
+        field.eval(&self.samples, values);
+        values.iter().all(|f| f.is_finite()).then_some(())
+    }
+
+    fn harmonic(
+        &mut self,
+        maker: &Maker<'_, D>,
+        stencil: &Stencil<D>,
+        material: &Material<D>,
+        response: f64,
+    ) -> Option<Equation> {
+        let unit = response / (2 * D) as f64;
+        let field = match &material.source {
+            None => return Some(Equation::Harmonic { source: Source::None, unit }),
+            Some(field) => field,
+        };
+        if let Some(f) = field.as_constant() {
+            return Some(Equation::Harmonic { source: Source::Constant(f), unit });
         }
-        self.values.iter_mut().for_each(|f| *f *= response);
+        let particular = maker.particular.as_ref()?;
+        let mut values = std::mem::take(&mut self.values);
+        let finite = self.sample(stencil, &particular.samples, field, &mut values);
+        values.iter_mut().for_each(|f| *f *= response);
         let mut coefficients = Vec::new();
-        particular.solve(&self.values, &mut coefficients);
-        Some(Source::Fitted(coefficients))
+        particular.solve(&values, &mut coefficients);
+        self.values = values;
+        finite.map(|()| Equation::Harmonic { source: Source::Fitted(coefficients), unit })
+    }
+
+    fn adapted(
+        &mut self,
+        maker: &Maker<'_, D>,
+        stencil: &Stencil<D>,
+        material: &Material<D>,
+        response: f64,
+    ) -> Option<Equation> {
+        let adapted = maker.adapted.as_ref()?;
+        let [mut eta, mut values] = [&mut self.eta, &mut self.values].map(std::mem::take);
+        let mut finite = self.sample(stencil, &adapted.samples, &material.diffusivity, &mut eta);
+        self.unit.clear();
+        self.unit.extend(eta.iter().map(|eta| response / eta));
+        match &material.source {
+            Some(field) => {
+                finite = finite.and(self.sample(stencil, &adapted.samples, field, &mut values));
+                values.iter_mut().zip(&self.unit).for_each(|(f, unit)| *f *= unit);
+            }
+            None => {
+                values.clear();
+                values.resize(eta.len(), 0.0);
+            }
+        }
+        let mut coefficients = Vec::new();
+        let found = finite.is_some()
+            && adapted.solve(&eta, &[&values, &self.unit], &mut self.adapted, &mut coefficients);
+        (self.eta, self.values) = (eta, values);
+        found.then_some(Equation::Adapted(coefficients))
     }
 
     pub(super) fn columns(&self) -> usize {
@@ -130,44 +191,83 @@ impl<const D: usize> Parts<D> {
         self.parts[part].first_column
     }
 
-    pub(super) fn is_harmonic(&self, part: usize) -> bool {
-        self.parts[part].harmonic
+    /// Whether the equation of a part is in rows.
+    pub(super) fn has_rows(&self, part: usize) -> bool {
+        matches!(self.parts[part].equation, Equation::Rows)
     }
 
-    /// Evaluates the basis of a part at z, and what its particular part needs there.
-    pub(super) fn evaluate(&mut self, maker: &Maker<'_, D>, part: usize, z: &[f64; D], jet: &mut Jet<D>) {
-        maker.basis_of(self.parts[part].harmonic).evaluate(z, jet);
+    /// Evaluates the functions of a part at z, their slopes if asked for, and what its particular part needs there.
+    pub(super) fn evaluate(
+        &mut self,
+        maker: &Maker<'_, D>,
+        part: usize,
+        z: &[f64; D],
+        slopes: bool,
+        jet: &mut Jet<D>,
+    ) {
         self.z.clear();
         self.z.extend(z);
-        if let (Source::Fitted(_), Some(particular)) = (&self.parts[part].source, &maker.particular) {
-            particular.basis.evaluate(z, &mut self.particular);
+        match &self.parts[part].equation {
+            Equation::Rows => maker.complete_basis.evaluate(z, jet),
+            Equation::Harmonic { source, .. } => {
+                maker.harmonic_basis.evaluate(z, jet);
+                if let (Source::Fitted(_), Some(particular)) = (source, &maker.particular) {
+                    particular.basis.evaluate(z, &mut self.particular);
+                }
+            }
+            Equation::Adapted(coefficients) => {
+                maker.harmonic_basis.evaluate(z, jet);
+                let Some(adapted) = &maker.adapted else { return };
+                let monomials = &mut self.particular;
+                adapted.basis.evaluate(z, monomials);
+                let lacking = coefficients.chunks_exact(monomials.values.len());
+                for ((value, slope), lacks) in jet.values.iter_mut().zip(&mut jet.gradients).zip(lacking) {
+                    *value += lacks.iter().zip(&monomials.values).map(|(c, v)| c * v).sum::<f64>();
+                    if slopes {
+                        for (c, gradient) in lacks.iter().zip(&monomials.gradients) {
+                            slope.iter_mut().zip(gradient).for_each(|(s, g)| *s += c * g);
+                        }
+                    }
+                }
+            }
         }
     }
 
     /// A functional of the particular part at the point that was evaluated last: for the source, and for a source of 1.
     pub(super) fn apply_to_particular(&self, part: usize, functional: &Row<D>) -> [f64; 2] {
-        let Part { source, unit, .. } = &self.parts[part];
-        if *unit == 0.0 {
-            return [0.0; 2];
-        }
-        let square: f64 = self.z.iter().map(|z| z * z).sum();
-        let slope: f64 = self.z.iter().zip(functional.gradient).map(|(z, g)| 2.0 * z * g).sum();
-        let of_one = unit * (functional.value * square + slope + functional.laplacian * (2 * D) as f64);
-        let of_source = match source {
-            Source::None => 0.0,
-            Source::Constant(f) => f * of_one,
-            Source::Fitted(coefficients) => {
-                coefficients.iter().enumerate().map(|(m, c)| c * functional.apply(&self.particular, m)).sum()
-            }
+        let of_monomials = |coefficients: &[f64]| -> f64 {
+            coefficients.iter().enumerate().map(|(m, c)| c * functional.apply(&self.particular, m)).sum()
         };
-        [of_source, of_one]
+        match &self.parts[part].equation {
+            Equation::Rows => [0.0; 2],
+            Equation::Harmonic { source, unit } => {
+                let square: f64 = self.z.iter().map(|z| z * z).sum();
+                let slope: f64 = self.z.iter().zip(functional.gradient).map(|(z, g)| 2.0 * z * g).sum();
+                let of_one =
+                    unit * (functional.value * square + slope + functional.laplacian * (2 * D) as f64);
+                let of_source = match source {
+                    Source::None => 0.0,
+                    Source::Constant(f) => f * of_one,
+                    Source::Fitted(coefficients) => of_monomials(coefficients),
+                };
+                [of_source, of_one]
+            }
+            Equation::Adapted(coefficients) => {
+                let count = self.particular.values.len();
+                let [source, unit] = [2, 1].map(|from_end| coefficients.len() - from_end * count);
+                [of_monomials(&coefficients[source..unit]), of_monomials(&coefficients[unit..])]
+            }
+        }
     }
 
-    /// Value or derivative in z along an axis of a particular part at the center of the stencil, likewise.
+    /// Value or derivative in z along an axis of a particular part at the center of the stencil, likewise. That of a
+    /// diffusivity that varies has neither there.
     pub(super) fn particular_at_center(&self, part: usize, axis: Option<usize>) -> [f64; 2] {
-        match &self.parts[part].source {
-            Source::Fitted(coefficients) => [coefficients[axis.map_or(0, |axis| 1 + axis)], 0.0],
-            Source::None | Source::Constant(_) => [0.0; 2],
+        match &self.parts[part].equation {
+            Equation::Harmonic { source: Source::Fitted(coefficients), .. } => {
+                [coefficients[axis.map_or(0, |axis| 1 + axis)], 0.0]
+            }
+            _ => [0.0; 2],
         }
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use meshless_tests::kraus::{self, SUPPORT};
 use meshless_tests::particle_difference::{Regularity, circle, cylinder};
-use meshless_tests::sharp::{ball_mode, circle_mode, ellipse, pair, quadrants, star, torus};
+use meshless_tests::sharp::{ball_mode, circle_mode, ellipse, graded, pair, quadrants, star, torus};
 
 use super::{at_least, sharp, sharp_in_space};
 use crate::verify::options::Effort;
@@ -83,11 +83,18 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
             ..plain(
                 "disc",
                 "Disc of variable conductivity",
-                "Yoon and Song, section 3.2: the general form inside, the harmonic one outside; the flux jumps.",
+                "Yoon and Song, section 3.2: the diffusivity varies inside, and the flux jumps.",
                 disc,
                 1e2,
             )
         },
+        plain(
+            "graded",
+            "Diffusivity that varies",
+            "By the contrast, exponentially; it does not jump.",
+            graded,
+            1e4,
+        ),
         plain("star", "Star", "u and its flux jump along a star-shaped interface.", star, 1e2),
     ];
     if at_least(effort, Effort::Default) {

@@ -18,10 +18,11 @@ const SUITE: &str = "sharp";
 pub(super) const ABOUT: &str = "The sharp method: orders of u and of its gradient on irregular clouds that know nothing of the interface, errors at \
     given numbers of nodes, the spread over contrasts, and the error against seconds of all methods on the same clouds.";
 
-pub(super) const CASES: [&str; 18] = [
+pub(super) const CASES: [&str; 19] = [
     "interior",
     "mode-3",
     "disc",
+    "graded",
     "rings",
     "ellipse",
     "star",

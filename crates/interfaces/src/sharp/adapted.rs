@@ -1,0 +1,235 @@
+//! Polynomials that solve the equation where the diffusivity varies, up to the degree of the fit (quasi-Trefftz functions).
+//!
+//! In `z = (x - x_i)/R` the equation is `lap Q + b . grad Q = g` with `b = grad ln eta`. To each harmonic polynomial h belongs
+//! one solution `Q = h + P` of the homogeneous equation, P the polynomial of least norm whose Laplacian is
+//! `y = -b . grad (h + P)`, as far as polynomials of the degree of the fit can say so; and one P belongs to each source.
+//! With samples on the unit ball this is one small linear system for y a stencil, with a right-hand side for each function.
+
+use meshless_stencils::Qr;
+
+use super::basis::{Basis, Jet};
+use super::particular::{inverse_laplacian, pseudo_inverse, samples};
+
+/// Condition of the system beyond which the diffusivity varies too much over a stencil for its functions to be found.
+const LARGEST_CONDITION: f64 = 1e4;
+
+/// How much a sample of `ln eta` may differ from the polynomial that stands for it: more is a jump or a singularity.
+const LARGEST_MISFIT: f64 = 0.05;
+
+/// What the functions of all stencils share.
+#[derive(Debug, Clone)]
+pub(super) struct Adapted<const D: usize> {
+    /// Monomials of the polynomials P.
+    pub(super) basis: Basis<D>,
+    /// Where the diffusivity and the source are sampled.
+    pub(super) samples: Vec<[f64; D]>,
+    /// Harmonic polynomials, one a function.
+    functions: usize,
+    /// A row a monomial of y: its coefficient in the least-squares polynomial through samples.
+    fit: Vec<f64>,
+    /// A row a monomial of P: its coefficient for monomials of y.
+    inverse: Vec<f64>,
+    /// A row a sample: the polynomial, one degree higher than y, through samples of `ln eta`, and its derivatives.
+    logarithm: Vec<f64>,
+    slopes: [Vec<f64>; D],
+    /// A row a sample: derivatives of P for the monomials of y, then those of the harmonic polynomials.
+    derivatives: [Vec<f64>; D],
+}
+
+/// Memory of one thread.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scratch {
+    qr: Qr,
+    /// `ln eta` at the samples, and one component of its gradient there.
+    logarithm: Vec<f64>,
+    slope: Vec<f64>,
+    /// `b . grad` of everything at the samples, and its coefficients.
+    convected: Vec<f64>,
+    fitted: Vec<f64>,
+    right: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl<const D: usize> Adapted<D> {
+    /// For harmonic polynomials up to a degree and y up to another.
+    pub(super) fn new(harmonic: &Basis<D>, degree: usize) -> Self {
+        let (right, basis) = (Basis::complete(degree), Basis::complete(degree + 2));
+        let samples = samples(right.len());
+        let inverse = inverse_laplacian(&right, &basis);
+        let (count, functions, n) = (right.len(), harmonic.len(), samples.len());
+        let width = count + functions;
+        let mut derivatives: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; n * width]);
+        let (mut monomials, mut harmonics) = (Jet::default(), Jet::default());
+        for (k, z) in samples.iter().enumerate() {
+            basis.evaluate(z, &mut monomials);
+            harmonic.evaluate(z, &mut harmonics);
+            for (axis, table) in derivatives.iter_mut().enumerate() {
+                let row = &mut table[k * width..(k + 1) * width];
+                for (gradient, factors) in monomials.gradients.iter().zip(inverse.chunks_exact(count)) {
+                    row.iter_mut().zip(factors).for_each(|(entry, factor)| *entry += gradient[axis] * factor);
+                }
+                row[count..].iter_mut().zip(&harmonics.gradients).for_each(|(entry, g)| *entry = g[axis]);
+            }
+        }
+        let (logarithm, slopes) = differentiation(degree + 1, &samples);
+        let fit = pseudo_inverse(&right, &samples);
+        Self { basis, functions, fit, inverse, logarithm, slopes, derivatives, samples }
+    }
+
+    /// The functions of a stencil with these diffusivities at the samples, and the particular parts of `sources` there:
+    /// one after the other the coefficients of their P. False where the diffusivity is no smooth positive function.
+    pub(super) fn solve(
+        &self,
+        eta: &[f64],
+        sources: &[&[f64]],
+        scratch: &mut Scratch,
+        out: &mut Vec<f64>,
+    ) -> bool {
+        if !eta.iter().all(|eta| eta.is_finite() && *eta > 0.0) || !self.convect(eta, scratch) {
+            return false;
+        }
+        let (n, width) = (self.samples.len(), self.functions + self.fit.len() / self.samples.len());
+        let count = width - self.functions;
+        let Scratch { qr, convected, fitted, right, y, .. } = scratch;
+        multiply(&self.fit, convected, n, width, fitted);
+        qr.resize(count, count);
+        for column in 0..count {
+            let entries = qr.column_mut(column);
+            entries.iter_mut().zip(fitted.chunks_exact(width)).for_each(|(entry, row)| *entry = row[column]);
+            entries[column] += 1.0;
+        }
+        if !qr.factor(1.0 / LARGEST_CONDITION) {
+            return false;
+        }
+        out.clear();
+        y.resize(count, 0.0);
+        for function in 0..self.functions + sources.len() {
+            right.clear();
+            match function.checked_sub(self.functions) {
+                None => right.extend(fitted.chunks_exact(width).map(|row| -row[count + function])),
+                Some(source) => right.extend(self.fit.chunks_exact(n).map(|row| dot(row, sources[source]))),
+            }
+            qr.apply_transpose(right);
+            qr.back_substitute(right, y);
+            out.extend(self.inverse.chunks_exact(count).map(|row| dot(row, y)));
+        }
+        true
+    }
+
+    /// `b . grad` of P for each monomial of y and of each harmonic polynomial, at the samples.
+    fn convect(&self, eta: &[f64], scratch: &mut Scratch) -> bool {
+        let n = self.samples.len();
+        let Scratch { logarithm, slope, convected, .. } = scratch;
+        logarithm.clear();
+        logarithm.extend(eta.iter().map(|e| (e / eta[0]).ln()));
+        let misfit = |(row, value): (&[f64], &f64)| (dot(row, logarithm) - value).abs();
+        if self.logarithm.chunks_exact(n).zip(logarithm.iter()).map(misfit).any(|m| m > LARGEST_MISFIT) {
+            return false;
+        }
+        convected.clear();
+        convected.resize(self.derivatives[0].len(), 0.0);
+        let width = convected.len() / n;
+        for (slopes, derivatives) in self.slopes.iter().zip(&self.derivatives) {
+            slope.clear();
+            slope.extend(slopes.chunks_exact(n).map(|row| dot(row, logarithm)));
+            let rows = convected.chunks_exact_mut(width).zip(derivatives.chunks_exact(width));
+            for ((row, derivative), slope) in rows.zip(slope.iter()) {
+                row.iter_mut().zip(derivative).for_each(|(entry, d)| *entry += slope * d);
+            }
+        }
+        true
+    }
+}
+
+/// A row a sample: value and derivatives there of the least-squares polynomial through samples.
+fn differentiation<const D: usize>(degree: usize, samples: &[[f64; D]]) -> (Vec<f64>, [Vec<f64>; D]) {
+    let basis = Basis::complete(degree);
+    let (n, fit) = (samples.len(), pseudo_inverse(&basis, samples));
+    let mut values = vec![0.0; n * n];
+    let mut slopes: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; n * n]);
+    let mut jet = Jet::default();
+    for (k, z) in samples.iter().enumerate() {
+        basis.evaluate(z, &mut jet);
+        for (m, factors) in fit.chunks_exact(n).enumerate() {
+            let add = |table: &mut [f64], value: f64| {
+                let row = &mut table[k * n..(k + 1) * n];
+                row.iter_mut().zip(factors).for_each(|(entry, factor)| *entry += value * factor);
+            };
+            add(&mut values, jet.values[m]);
+            slopes.iter_mut().zip(jet.gradients[m]).for_each(|(table, g)| add(table, g));
+        }
+    }
+    (values, slopes)
+}
+
+/// The product of two matrices in rows, of `inner` and `width` columns.
+fn multiply(a: &[f64], b: &[f64], inner: usize, width: usize, out: &mut Vec<f64>) {
+    out.clear();
+    out.resize(a.len() / inner * width, 0.0);
+    for (row, factors) in out.chunks_exact_mut(width).zip(a.chunks_exact(inner)) {
+        for (factor, other) in factors.iter().zip(b.chunks_exact(width)) {
+            row.iter_mut().zip(other).for_each(|(entry, value)| *entry += factor * value);
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is left of the equation at a point with `eta = exp(k . z)`, for the functions up to a degree and a source.
+    fn residual<const D: usize>(degree: usize, up_to: usize, k: [f64; D], z: [f64; D]) -> f64 {
+        let harmonic = Basis::<D>::harmonic(degree);
+        let (adapted, counted) = (Adapted::new(&harmonic, degree), Basis::<D>::harmonic(up_to).len());
+        let along = |z: &[f64; D]| (0..D).map(|a| k[a] * z[a]).sum::<f64>();
+        let eta: Vec<f64> = adapted.samples.iter().map(|z| along(z).exp()).collect();
+        let source: Vec<f64> = adapted.samples.iter().map(|z| 1.0 - z[0]).collect();
+        let mut coefficients = Vec::new();
+        assert!(adapted.solve(&eta, &[&source], &mut Scratch::default(), &mut coefficients));
+        let (mut own, mut jet) = (Jet::default(), Jet::default());
+        harmonic.evaluate(&z, &mut own);
+        adapted.basis.evaluate(&z, &mut jet);
+        let mut worst = 0.0_f64;
+        for (function, p) in coefficients.chunks_exact(adapted.basis.len()).enumerate() {
+            // Values and slopes at the centre are those of the harmonic polynomial.
+            assert!(p[..=D].iter().all(|c| c.abs() < 1e-14), "{:?}", &p[..=D]);
+            let mut left = if function < harmonic.len() { 0.0 } else { z[0] - 1.0 };
+            for (m, c) in p.iter().enumerate() {
+                left += c * (jet.laplacians[m] + along(&jet.gradients[m]));
+            }
+            left += own.gradients.get(function).map_or(0.0, along);
+            if !(counted..harmonic.len()).contains(&function) {
+                worst = worst.max(left.abs());
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn functions_solve_the_equation_as_well_as_their_degree_allows() {
+        for scale in [1.0, 0.5, 0.25] {
+            let sizes = [
+                residual(6, 6, [0.3 * scale, -0.2 * scale], [0.3, 0.4]),
+                residual(4, 4, [0.2 * scale, 0.1 * scale, -0.2 * scale], [0.3, -0.5, 0.2]),
+                residual(4, 4, [0.3 * scale], [0.6]),
+            ];
+            assert!(sizes.iter().all(|size| *size < 1e-2 * scale), "{scale}: {sizes:?}");
+        }
+        // The more terms the same functions may have, the better they solve it.
+        let by_degree = [4, 6, 8].map(|degree| residual(degree, 4, [0.2, 0.1], [0.2, 0.3]));
+        assert!(by_degree[1] < 0.1 * by_degree[0] && by_degree[2] < 0.1 * by_degree[1], "{by_degree:?}");
+    }
+
+    #[test]
+    fn a_jump_is_not_taken_for_a_smooth_function() {
+        let adapted = Adapted::new(&Basis::<2>::harmonic(4), 4);
+        let eta: Vec<f64> = adapted.samples.iter().map(|z| if z[0] < 0.1 { 1.0 } else { 2.0 }).collect();
+        assert!(!adapted.solve(&eta, &[], &mut Scratch::default(), &mut Vec::new()));
+        let eta: Vec<f64> = adapted.samples.iter().map(|z| z[0]).collect();
+        assert!(!adapted.solve(&eta, &[], &mut Scratch::default(), &mut Vec::new()));
+    }
+}
