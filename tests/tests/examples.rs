@@ -103,7 +103,12 @@ fn estimates_are_of_the_size_of_the_errors() {
     for name in ["ball", "chip", "curved", "inclusion", "membrane", "pipe"] {
         let Example { spacing, .. } = EXAMPLES.iter().find(|e| e.name == name).unwrap();
         let report = solve(name, spacing);
-        let ratio = report.estimate.l2.unwrap() / report.errors.unwrap().l2;
+        let (estimate, error) = (report.estimate.l2.unwrap(), report.errors.unwrap().l2);
+        // Polynomials are exact, and their round-off has no size to estimate.
+        if error < 1e-11 && estimate < 1e-9 {
+            continue;
+        }
+        let ratio = estimate / error;
         assert!((0.2..6.0).contains(&ratio), "{name}: estimate over error {ratio}");
     }
 }

@@ -51,20 +51,15 @@ fn every_effect_adds_its_own_stages_and_no_others() {
         added(Small { extra: "[output]\nvtu = true\n\n", ..Small::default() }),
         [Stage::Gradient, Stage::Diagnosis, Stage::Vtu]
     );
+    let fits =
+        [Stage::Regions, Stage::Diffusivity, Stage::DiffusionStencils, Stage::ConstrainedStencils].to_vec();
+    assert_eq!(added(Small { inside: Some("5"), ..Small::default() }), fits);
+    let stiff = [&fits[..], &[Stage::FloatingConstants]].concat();
+    assert_eq!(added(Small { inside: Some("1e6"), ..Small::default() }), stiff);
+    let extra = "[method]\nname = \"gfdm-hybrid\"\n\n";
     assert_eq!(
-        added(Small { inside: Some("5"), ..Small::default() }),
+        added(Small { inside: Some("5"), extra, ..Small::default() }),
         [Stage::Regions, Stage::Diffusivity, Stage::DiffusionStencils, Stage::NodeSelection, Stage::Cells]
-    );
-    assert_eq!(
-        added(Small { inside: Some("1e6"), ..Small::default() }),
-        [
-            Stage::Regions,
-            Stage::Diffusivity,
-            Stage::DiffusionStencils,
-            Stage::NodeSelection,
-            Stage::Cells,
-            Stage::FloatingConstants
-        ]
     );
 }
 
@@ -77,12 +72,25 @@ fn two_regions_of_one_material_are_no_interface() {
 }
 
 #[test]
-fn jumps_are_effects_and_call_for_cells() {
-    let extra = "[[interfaces]]\nbetween = [\"inside\", \"outside\"]\nflux_jump = \"1\"\n\n";
-    let plan = plan(&Small { inside: Some("1"), extra, ..Small::default() });
+fn jumps_are_effects_and_call_for_fits_on_both_sides() {
+    let text = |extra: &str| {
+        let jump = "[[interfaces]]\nbetween = [\"inside\", \"outside\"]\nflux_jump = \"1\"\n\n";
+        Small { inside: Some("1"), extra: jump, ..Small::default() }.text() + extra
+    };
+    let with = |extra: &str| {
+        let scene = Scene::parse(&text(extra), "small.toml").expect("a scene");
+        Plan::new(&scene).expect("a plan")
+    };
+    let plan = with("");
     assert_eq!(plan.effects, [Effect::FluxJump]);
-    assert_eq!(plan.method.name, MethodName::GfdmHybrid);
-    assert!(plan.runs(Stage::Cells));
+    assert_eq!((plan.method.name, plan.fallback), (MethodName::Sharp, Some(MethodName::GfdmHybrid)));
+    assert!(plan.runs(Stage::ConstrainedStencils) && !plan.runs(Stage::Cells));
+    // An order that these fits do not have, or steps in time: balances.
+    for extra in ["[method]\norder = 3\n", "[time]\nend = 1.0\n"] {
+        let plan = with(extra);
+        assert_eq!((plan.method.name, plan.fallback), (MethodName::GfdmHybrid, None));
+        assert!(plan.runs(Stage::Cells));
+    }
 }
 
 #[test]

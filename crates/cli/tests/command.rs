@@ -148,7 +148,7 @@ fn plan_solves_nothing_and_says_why() {
     assert!(text.contains("source: the scene has no source"), "{text}");
     let output = meshless(&["plan", scene.to_str().unwrap(), "--json"]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(json["method"], "gfdm-hybrid");
+    assert_eq!(json["method"], "sharp");
 }
 
 #[test]

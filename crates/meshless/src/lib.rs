@@ -52,7 +52,7 @@
 //! "#, "disc.toml")?;
 //!
 //! let plan = Plan::new(&scene)?;
-//! assert!(plan.runs(Stage::Cells) && !plan.runs(Stage::Source));
+//! assert!(plan.runs(Stage::ConstrainedStencils) && !plan.runs(Stage::Source));
 //!
 //! let solution = execute(&scene, &plan, &mut Silent)?;
 //! // The disc floats at the mean of both sides.

@@ -34,7 +34,7 @@ pub const METHODS: &[MethodInfo] = &[
         order: "1 / 2",
         dimensions: "1, 2, 3",
         limits: "balances near interfaces, stencils elsewhere: maximum principle, any contrast, jumps of u and of the \
-                 flux",
+                 flux; what `sharp` falls back on",
     },
     MethodInfo {
         name: "gfdm-conservative",

@@ -41,11 +41,16 @@ pub struct Sharp {
 }
 
 impl Sharp {
+    /// Whether there are fits of that order.
+    pub fn offers(order: usize, dimension: usize) -> bool {
+        order >= 2 && order.is_multiple_of(2) && order <= MAX_ORDER[dimension.clamp(1, 3) - 1]
+    }
+
     fn check<const D: usize>(&self, problem: &Problem<'_, D>) -> Result<(), MethodError> {
         problem.check()?;
         problem.without_slits("sharp")?;
         let order = self.params.order;
-        if order < 2 || !order.is_multiple_of(2) || order > MAX_ORDER[D - 1] {
+        if !Self::offers(order, D) {
             let what = format!(
                 "order {order} of the sharp method in {D}-D; it must be even and at most {}",
                 MAX_ORDER[D - 1]

@@ -1,5 +1,6 @@
 //! Decisions: method, solver, stages.
 
+use meshless_interfaces::sharp::Sharp;
 use meshless_sparse::{
     MultigridParams, PreconditionerKind, Restriction, SmootherKind, SolverKind, SolverParams,
 };
@@ -70,10 +71,10 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
             order = choice.order;
             (choice.name, choice.why)
         }
-        (MethodName::Auto, None) if survey.has_interface() => (
-            MethodName::GfdmHybrid,
-            "something jumps at an interface: balances there, stencils elsewhere".to_owned(),
-        ),
+        (MethodName::Auto, None) if survey.has_interface() => {
+            let (name, why) = at_interfaces(scene);
+            (name, why.to_owned())
+        }
         (MethodName::Auto, None) => {
             (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned())
         }
@@ -85,6 +86,20 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     let scene = &scene.with_order(order);
     method::check(name, scene)?;
     Ok(described(name, why, scene, survey))
+}
+
+/// What a scene takes where something jumps at an interface and no tolerance is given: fits of high order, unless the
+/// interfaces are known roughly only, or u changes with time.
+fn at_interfaces(scene: &Scene) -> (MethodName, &'static str) {
+    let labels = scene.is_labelled() || scene.method.options.interfaces == Some(InterfacesName::Labels);
+    let order = scene.method.order;
+    if labels {
+        (MethodName::GfdmHybrid, "interfaces are known to a share of the spacing only: balances there")
+    } else if scene.time.is_some() || order.is_some_and(|order| !Sharp::offers(order, scene.dimension)) {
+        (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere")
+    } else {
+        (MethodName::Sharp, "something jumps at an interface: one polynomial on each side, joined there")
+    }
 }
 
 /// A method with its parameters as the scene asks for them.

@@ -1,4 +1,4 @@
-//! What is done where the nodes do not resolve what the method of a plan needs resolved.
+//! What is done where the nodes do not resolve what the method of a plan needs resolved, or its equations are not solved.
 
 use meshless_interfaces::MethodError;
 
@@ -17,7 +17,10 @@ pub(super) fn of(scene: &Scene, method: &MethodPlan) -> Option<MethodName> {
 impl Plan {
     /// The plan to go on with after `error`, where this one has something to fall back on for it.
     pub fn after(&self, error: &MethodError, scene: &Scene) -> Result<Option<Self>, Error> {
-        let (Some(name), MethodError::Unresolved { .. }) = (self.fallback, error) else { return Ok(None) };
+        let (Some(name), MethodError::Unresolved { .. } | MethodError::Solve(_)) = (self.fallback, error)
+        else {
+            return Ok(None);
+        };
         let survey = Survey::of(scene)?;
         // An order that was asked for is that of the fits; balances have their own.
         let mut scene = scene.clone();

@@ -66,7 +66,7 @@ impl fmt::Display for Plan {
         if let Some(fallback) = self.fallback {
             writeln!(
                 f,
-                "fallback    {}, where the nodes do not resolve a gap or a layer",
+                "fallback    {}, where the nodes do not resolve a gap or a layer, or the solver gives up",
                 fallback.as_str()
             )?;
         }
