@@ -47,7 +47,7 @@ pub enum MethodError {
     },
     /// A phase field that has lost a region: nodes of it have come to lie in another one.
     #[error(
-        "interfaces cannot be found from labels: region {region} is too thin near {position:?}; it must be about six \
+        "interfaces cannot be found from labels: region {region} is too thin near {position:?}; it must be about two \
          nodes thick. Give more points, or the shapes of the regions"
     )]
     LostRegion {

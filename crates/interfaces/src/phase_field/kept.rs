@@ -1,7 +1,9 @@
-//! Whether every region is still where its labels are.
+//! Whether every region is still where its labels are, and has its interfaces.
 
 use meshless_geometry::{Cloud, RegionMap};
 use meshless_neighbors::NeighborLists;
+
+use rayon::prelude::*;
 
 use crate::MethodError;
 
@@ -12,6 +14,9 @@ const CLEAR: f64 = 1.5;
 /// Largest share of a region's nodes near interfaces that may have come to lie in another region. Where the field does
 /// its work an interface is known to a quarter of a spacing: in a layer of four spacings that is an eighth of the nodes.
 const LOST: f64 = 0.25;
+
+/// How far interfaces are looked for, over the distance of the farthest neighbour.
+const REACH: f64 = 1.5;
 
 /// Compares the regions with the labels that they were made from, at the nodes of the band.
 pub(super) fn check_kept<const D: usize>(
@@ -47,6 +52,38 @@ pub(super) fn check_kept<const D: usize>(
         Some(((.., Some(i)), region)) => Err(lost(cloud, region, *i)),
         _ => Ok(()),
     }
+}
+
+/// Whether every node near an interface finds it: methods continue the field of a region to the nodes of another.
+pub(super) fn check_interfaces<const D: usize>(
+    cloud: &Cloud<D>,
+    lists: &NeighborLists,
+    labels: &[u16],
+    band: &[u32],
+    map: &RegionMap<D>,
+) -> Result<(), MethodError> {
+    let misses = |&i: &u32| {
+        let i = i as usize;
+        let x = &cloud.points()[i];
+        let farthest = lists
+            .of(i)
+            .iter()
+            .map(|&j| (0..D).map(|k| (cloud.points()[j as usize][k] - x[k]).powi(2)).sum::<f64>());
+        let reach = REACH * farthest.fold(0.0, f64::max).sqrt();
+        let mut beyond: Vec<u16> = lists.of(i).iter().map(|&j| labels[j as usize]).collect();
+        beyond.sort_unstable();
+        beyond.dedup();
+        let meets = |a: u16, b: u16| a != b && map.project(a, b, x, reach).is_ok();
+        // The interface with a region in between will do.
+        beyond
+            .iter()
+            .find(|&&own| {
+                own != labels[i] && !meets(own, labels[i]) && !beyond.iter().any(|&b| meets(own, b))
+            })
+            .map(|&own| (own, i))
+    };
+    let missed: Vec<(u16, usize)> = band.par_iter().filter_map(misses).collect();
+    missed.first().map_or(Ok(()), |&(region, node)| Err(lost(cloud, region, node)))
 }
 
 fn lost<const D: usize>(cloud: &Cloud<D>, region: u16, node: usize) -> MethodError {

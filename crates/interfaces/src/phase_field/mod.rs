@@ -8,6 +8,7 @@
 //! From the nodal distances [`regions_from_labels`] makes a [`RegionMap`] that any method can work with: a cloud that
 //! knows the region of every node and no geometry, as from an image or a scan, is solved through it.
 
+mod averages;
 mod derivatives;
 mod evolve;
 mod kept;
@@ -19,9 +20,10 @@ use meshless_geometry::{Cloud, RegionMap, Shape};
 use meshless_neighbors::NeighborLists;
 
 use crate::MethodError;
+use averages::{AveragedRegion, Averages};
 use derivatives::Derivatives;
 use evolve::evolve;
-use kept::check_kept;
+use kept::{check_interfaces, check_kept};
 use surface::{Blend, RegionSurface};
 
 /// Standard deviation of the place of an interface of which labels alone are known, in units of the spacing: anywhere
@@ -69,12 +71,17 @@ pub enum PhaseFieldStop {
     Drift,
     /// All steps are done.
     Steps,
+    /// A layer was too thin for its field: the regions are where Gaussian averages of their labels outweigh the others.
+    Averaged,
 }
 
 /// The regions of a cloud from the labels of its nodes alone, with how each region's field came to rest.
 ///
 /// `lists` are supports for DC-PSE operators of second order (about 6, 26, 57 neighbours in 1-, 2-, 3-D); `regions` is
 /// the number of regions, each of which must have nodes. The last region is the background.
+///
+/// Where a layer is too thin for the fields, all regions are where Gaussian averages of their labels, of a standard
+/// deviation of 0.8 spacings, outweigh those of the others ([`PhaseFieldStop::Averaged`]).
 ///
 /// # Errors
 /// [`MethodError::InvalidProblem`] for labels that do not fit, [`MethodError::Stencil`] where nodes near an interface
@@ -120,6 +127,30 @@ pub fn regions_from_labels<const D: usize>(
         })
         .collect();
     let map = RegionMap::new(shapes)?;
-    check_kept(cloud, lists, labels, derivatives.band(), &map)?;
+    let band = derivatives.band();
+    let checked = |map: &RegionMap<D>| {
+        check_kept(cloud, lists, labels, band, map)?;
+        check_interfaces(cloud, lists, labels, band, map)
+    };
+    if checked(&map).is_ok() {
+        return Ok((map, infos));
+    }
+    let map = averaged(cloud, labels, regions)?;
+    checked(&map)?;
+    infos.iter_mut().for_each(|info| info.stop = PhaseFieldStop::Averaged);
     Ok((map, infos))
+}
+
+/// The regions by averages of their labels.
+fn averaged<const D: usize>(
+    cloud: &Cloud<D>,
+    labels: &[u16],
+    regions: usize,
+) -> Result<RegionMap<D>, MethodError> {
+    let averages = Arc::new(Averages::new(cloud, labels, regions));
+    let shape = |region| {
+        let surface = AveragedRegion::new(Arc::clone(&averages), region);
+        (region + 1 < regions).then(|| Shape::level_set(Arc::new(surface)))
+    };
+    Ok(RegionMap::new((0..regions).map(shape).collect())?)
 }

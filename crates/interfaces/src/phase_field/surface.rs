@@ -106,8 +106,9 @@ fn place<const D: usize>(x: &[f64; D], cell: f64) -> [i64; D] {
     x.map(|c| (c / cell).floor() as i64)
 }
 
-/// One region: half of its own distance less the smallest of the others. So every point is in exactly one region, and
-/// between two regions, whose distances differ in sign, the level is the mean of both.
+/// One region with all before it: half of the smallest of their distances less the smallest of the others. So every point is in
+/// exactly one region, between two regions, whose distances differ in sign, the level is the mean of both, and an
+/// interface is found from beyond a thin layer.
 pub(super) struct RegionSurface<const D: usize> {
     blend: Arc<Blend<D>>,
     region: usize,
@@ -121,9 +122,11 @@ impl<const D: usize> RegionSurface<D> {
     fn at(&self, x: &[f64; D]) -> (f64, [f64; D]) {
         let mut all = Vec::new();
         self.blend.at(x, &mut all);
-        let own = all[self.region];
-        let others = all.iter().enumerate().filter(|(r, _)| *r != self.region).map(|(_, d)| *d);
-        let other = others.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, [0.0; D]));
+        let (up_to_own, beyond) = all.split_at((self.region + 1).min(all.len()));
+        let least = |of: &[(f64, [f64; D])]| {
+            of.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, [0.0; D]))
+        };
+        let (own, other) = (least(up_to_own), least(beyond));
         (0.5 * (own.0 - other.0), std::array::from_fn(|k| 0.5 * (own.1[k] - other.1[k])))
     }
 }

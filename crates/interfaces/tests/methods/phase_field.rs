@@ -65,14 +65,45 @@ fn the_interface_is_found_to_a_fraction_of_the_spacing() {
     }
 }
 
-/// A ring of one and a half spacings: there is nothing in it that is far enough from both sides.
+/// Layers of a few spacings are beyond a phase field: averages of the labels find both of their sides to what labels know,
+/// `1/sqrt(12)` spacings.
+#[test]
+fn thin_rings_are_found() {
+    let h = 0.02;
+    for layout in [Layout::Grid, Layout::Jittered, Layout::Irregular] {
+        for thickness in [1.5, 2.0, 3.0, 4.0] {
+            let outer = 0.2 + thickness * h;
+            let setup = ring(layout, h, outer);
+            let lists = setup.problem().supports.lists;
+            let params = PhaseFieldParams::default();
+            let (regions, _) = regions_from_labels(&setup.cloud, lists, &setup.labels, 3, &params).unwrap();
+            for (between, radius) in [([0, 1], 0.2), ([1, 2], outer)] {
+                let offset = |k: i32| {
+                    let angle = std::f64::consts::TAU * f64::from(k) / 60.0;
+                    let r = radius + 0.3 * h;
+                    let x = [0.48 + r * angle.cos(), 0.5 + r * angle.sin()];
+                    let foot = regions.project(between[0], between[1], &x, 6.0 * h).unwrap().point;
+                    (foot[0] - 0.48).hypot(foot[1] - 0.5) - radius
+                };
+                let rms = ((0..60).map(|k| offset(k).powi(2)).sum::<f64>() / 60.0).sqrt() / h;
+                assert!(rms < 12_f64.sqrt().recip(), "{layout:?}, {thickness}, {between:?}: {rms}");
+            }
+        }
+    }
+}
+
+fn ring(layout: Layout, spacing: f64, outer: f64) -> Setup<2> {
+    let ball = |radius| Some(Shape::ball([0.48, 0.5], radius).unwrap());
+    Setup::<2>::generated(unit(), layout, spacing, 1)
+        .with_support(2.9)
+        .regions(vec![ball(0.2), ball(outer), None], &[1.0; 3])
+}
+
+/// A ring of half a spacing is single nodes: it has no sides.
 #[test]
 fn a_ring_that_is_too_thin_is_refused() {
     for layout in [Layout::Grid, Layout::Jittered, Layout::Irregular] {
-        let ball = |radius| Some(Shape::ball([0.48, 0.5], radius).unwrap());
-        let setup = Setup::<2>::generated(unit(), layout, 0.02, 1)
-            .with_support(2.9)
-            .regions(vec![ball(0.2), ball(0.2 + 0.03), None], &[1.0; 3]);
+        let setup = ring(layout, 0.02, 0.2 + 0.01);
         let lists = setup.problem().supports.lists;
         let found = regions_from_labels(&setup.cloud, lists, &setup.labels, 3, &PhaseFieldParams::default());
         assert!(matches!(found, Err(MethodError::LostRegion { region: 1, .. })), "{layout:?}");

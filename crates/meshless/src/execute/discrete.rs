@@ -43,7 +43,7 @@ fn explain_phase_field(scene: &Scene, error: MethodError) -> Error {
                 spec.name
             );
             let help =
-                "a layer must be about six nodes thick: give more points, or the shapes of the regions";
+                "a layer must be about two nodes thick: give more points, or the shapes of the regions";
             spec.place.error(message, help).into()
         }
         error => error.into(),
