@@ -31,7 +31,7 @@ pub enum SmootherKind {
     /// A Chebyshev polynomial of `D^-1 A` of second degree (Adams, Brezina, Hu and Tuminaro, J. Comput. Phys. 188, 2003): for
     /// matrices with eigenvalues near the real axis.
     Chebyshev,
-    /// Incomplete factors on the pattern of the matrix, of diagonal blocks of a fixed size.
+    /// Incomplete factors on the pattern of the matrix, of overlapping diagonal blocks of a fixed size.
     Ilu0,
 }
 
