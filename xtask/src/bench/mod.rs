@@ -6,6 +6,7 @@ mod measure;
 mod micro;
 mod scene;
 mod sharp;
+mod sharp_solver;
 mod solvers;
 mod table;
 
@@ -36,6 +37,7 @@ const BENCHES: &[Bench] = &[
         "the sharp method: stencils against their targets, and whole scenes to a given error",
         sharp::run,
     ),
+    ("sharp-solver", "multigrid on the matrices of the sharp method: products of a solve", sharp_solver::run),
     ("solvers", "multigrid against its targets: a ball in a box, six kinds of discretisation", solvers::run),
     ("effects", "what each effect of a scene costs, and what the facade does", effects::run),
     ("scene", "a scene of 1e5 nodes and contrast 1e6, from points to solution", scene::run),

@@ -30,6 +30,8 @@ pub(crate) struct Extra {
     pub(crate) picture: bool,
     /// By BiCGStab(2) to this residual, whatever the plan says.
     pub(crate) krylov: Option<f64>,
+    /// To this residual, by the plan's solver.
+    pub(crate) residual: Option<f64>,
 }
 
 /// Solves `problem`, the text of a scene without `[method]`, as `key` says.
@@ -46,6 +48,7 @@ pub(crate) fn solve(problem: &str, key: &Key, extra: Extra) -> Result<Solution, 
         plan.solver.preconditioner = PreconditionerKind::Ilu0;
         plan.solver.tolerance = tolerance;
     }
+    plan.solver.tolerance = extra.residual.unwrap_or(plan.solver.tolerance);
     meshless::execute(&scene, &plan, &mut Silent)
 }
 

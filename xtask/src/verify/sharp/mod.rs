@@ -2,6 +2,7 @@
 
 mod cases;
 mod checks;
+mod iterations;
 mod sections;
 mod singles;
 
@@ -81,6 +82,7 @@ pub(super) fn run(options: &Options) -> Study {
     let ladders = ladders(effort);
     let mut jobs: Vec<Job> = ladders.iter().flat_map(ladder_jobs).collect();
     jobs.extend(singles::single_runs(effort));
+    jobs.extend(iterations::jobs(effort));
     runner.run_all(jobs);
     for ladder in &ladders {
         if options.wants(ladder.case, "sharp") {
@@ -89,6 +91,7 @@ pub(super) fn run(options: &Options) -> Study {
     }
     at_probes(&mut runner);
     checks::single(&runner, effort, &mut claims);
+    iterations::check(&runner, effort, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
     let sections = sections::sections(&runner, &ladders);
