@@ -1,6 +1,7 @@
-//! Poisson's equation `-lap phi = f` in free space, by convolution with regularised Green's functions.
+#![doc = include_str!("../README.md")]
 
 mod error;
+mod fft;
 mod kernel;
 mod mesh;
 mod particles;

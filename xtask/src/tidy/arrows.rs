@@ -52,6 +52,7 @@ const WRAPPED: &[(&str, &str)] = &[
     ("kiddo", "meshless-neighbors"),
     ("plotters", "meshless-output"),
     ("rand_xoshiro", "meshless-geometry"),
+    ("pulp", "meshless-freespace"),
     ("realfft", "meshless-freespace"),
     ("rustfft", "meshless-freespace"),
     ("sprs", "meshless-sparse"),

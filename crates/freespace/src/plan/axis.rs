@@ -1,16 +1,13 @@
 //! One direction of the transforms.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
-
-use realfft::{ComplexToReal, RealToComplex};
-use rustfft::Fft;
-use rustfft::num_complex::Complex;
 
 use super::boundary::Continuation;
 use super::real::Real;
+use crate::fft::Lines;
 
 /// Number of points, padded length and transforms of one direction.
+#[derive(Debug)]
 pub(super) struct Axis<T: Real> {
     /// Points of the mesh.
     pub(super) n: usize,
@@ -20,35 +17,20 @@ pub(super) struct Axis<T: Real> {
     own: usize,
     /// Images: place, index of the value, sign.
     images: Vec<(usize, usize, T)>,
-    /// The wave number that belongs to each place of a transform, for derivatives: zero at the Nyquist frequency, whose
-    /// derivative is not known at the points.
+    /// The wave numbers for derivatives: zero at the Nyquist frequency, whose derivative is not known at the points.
     pub(super) wave: Vec<T>,
-    pub(super) forward: Arc<dyn Fft<T>>,
-    pub(super) inverse: Arc<dyn Fft<T>>,
-}
-
-/// The transforms of the first direction, between real and complex numbers.
-pub(super) struct RealTransforms<T: Real> {
-    pub(super) forward: Arc<dyn RealToComplex<T>>,
-    pub(super) inverse: Arc<dyn ComplexToReal<T>>,
-}
-
-impl<T: Real> std::fmt::Debug for Axis<T> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Axis").field("n", &self.n).field("len", &self.len).finish_non_exhaustive()
-    }
-}
-
-impl<T: Real> std::fmt::Debug for RealTransforms<T> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("RealTransforms").finish_non_exhaustive()
-    }
+    /// The same, in the order of the transforms of several lines.
+    pub(super) wave_at: Vec<T>,
+    pub(super) lines: Lines<T>,
+    /// Whether the upper half of a line is zero and not wanted.
+    pub(super) halved: bool,
 }
 
 impl<T: Real> Axis<T> {
     pub(super) fn new(n: usize, continuation: &Continuation, spacing: f64) -> Self {
         let len = continuation.len;
-        let [forward, inverse] = T::complex(len);
+        let lines = Lines::new(len);
+        let wave: Vec<T> = waves(len, spacing).map(T::rounded).collect();
         Self {
             n,
             len,
@@ -58,40 +40,30 @@ impl<T: Real> Axis<T> {
                 .iter()
                 .map(|&(place, i, sign)| (place, i, T::rounded(sign)))
                 .collect(),
-            wave: waves(len, spacing).map(T::rounded).collect(),
-            forward,
-            inverse,
+            wave_at: lines.order().iter().map(|&k| wave[k]).collect(),
+            wave,
+            halved: lines.halves() && continuation.images.is_empty() && 2 * n <= len,
+            lines,
         }
     }
 
-    /// Continues a line of values to the length of the transforms.
-    pub(super) fn load<V>(&self, values: &[V], line: &mut [V])
-    where
-        V: Copy + Default + std::ops::Mul<T, Output = V>,
-    {
-        line[..self.own].copy_from_slice(&values[..self.own]);
-        line[self.own..].fill(V::default());
+    /// Values that a line begins with.
+    pub(super) fn own(&self) -> usize {
+        self.own
+    }
+
+    /// Places of a line that have to be filled.
+    pub(super) fn filled(&self) -> usize {
+        if self.halved { self.len / 2 } else { self.len }
+    }
+
+    /// Continues packs of `width` numbers, the first of which are there already.
+    pub(super) fn continue_packs(&self, packs: &mut [T], width: usize) {
         for &(place, index, sign) in &self.images {
-            line[place] = values[index] * sign;
+            for i in 0..width {
+                packs[place * width + i] = packs[index * width + i] * sign;
+            }
         }
-    }
-
-    /// The same where the line begins with the values already.
-    pub(super) fn continue_in_place<V>(&self, line: &mut [V])
-    where
-        V: Copy + Default + std::ops::Mul<T, Output = V>,
-    {
-        line[self.own..].fill(V::default());
-        for &(place, index, sign) in &self.images {
-            line[place] = line[index] * sign;
-        }
-    }
-
-    /// The values at the points; beyond a period they begin again.
-    pub(super) fn store<V: Copy>(&self, line: &[V], values: &mut [V]) {
-        let once = self.n.min(self.len);
-        values[..once].copy_from_slice(&line[..once]);
-        values[once..self.n].copy_from_slice(&line[..self.n - once]);
     }
 
     /// Places of a transform up to and including the Nyquist frequency.
@@ -99,34 +71,23 @@ impl<T: Real> Axis<T> {
         self.len / 2 + 1
     }
 
-    /// The place below the Nyquist frequency with the same magnitude of the wave number.
-    pub(super) fn fold(&self, place: usize) -> usize {
-        place.min(self.len - place)
-    }
-
     /// The factors that move a line by `shift` points, `exp(i k shift h)`; at the Nyquist frequency the cosine, since the
     /// sine is not known there.
-    pub(super) fn phases(&self, shift: f64) -> Vec<Complex<T>> {
+    pub(super) fn phases(&self, shift: f64) -> Vec<[T; 2]> {
         (0..self.len)
             .map(|k| {
                 let signed = if 2 * k <= self.len { k as f64 } else { k as f64 - self.len as f64 };
                 let (sin, cos) = (TAU * signed * shift / self.len as f64).sin_cos();
                 let sin = if 2 * k == self.len { 0.0 } else { sin };
-                Complex::new(T::rounded(cos), T::rounded(sin))
+                [T::rounded(cos), T::rounded(sin)]
             })
             .collect()
     }
 
-    /// Scratch that either transform needs.
-    pub(super) fn scratch(&self) -> usize {
-        self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len())
-    }
-}
-
-impl<T: Real> RealTransforms<T> {
-    pub(super) fn new(len: usize) -> Self {
-        let (forward, inverse) = T::real(len);
-        Self { forward, inverse }
+    /// The same in the order of the transforms of several lines.
+    pub(super) fn phases_at(&self, shift: f64) -> Vec<[T; 2]> {
+        let phases = self.phases(shift);
+        self.lines.order().iter().map(|&k| phases[k]).collect()
     }
 }
 

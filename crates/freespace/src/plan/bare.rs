@@ -11,7 +11,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
     /// benchmarks: what a solve takes beyond this is what it takes for moving data.
     pub fn bare_transforms(&self) {
         let [x, y, z] = &self.engine.axes;
-        let (forward, inverse) = (&self.engine.real.forward, &self.engine.real.inverse);
+        let (forward, inverse) = T::real(x.len);
         let (mut real, mut half) = (forward.make_input_vec(), forward.make_output_vec());
         let (mut there, mut back) = (forward.make_scratch_vec(), inverse.make_scratch_vec());
         for _ in 0..y.n * z.n {
@@ -22,22 +22,24 @@ impl<const D: usize, T: Real> Plan<D, T> {
             debug_assert!(forward.is_ok() && inverse.is_ok(), "the buffers were made for this length");
         }
         for (axis, lines) in [(y, x.half() * z.n), (z, x.half() * y.len)] {
-            let mut line = vec![Complex::new(T::one(), T::zero()); axis.len];
-            let mut scratch = vec![Complex::default(); axis.scratch()];
             if axis.len == 1 {
                 continue;
             }
+            let [forward, inverse] = T::complex(axis.len);
+            let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
+            let mut line = vec![Complex::new(T::one(), T::zero()); axis.len];
+            let mut scratch = vec![Complex::default(); scratch];
             for _ in 0..lines {
                 line.fill(Complex::new(T::one(), T::zero()));
-                axis.forward.process_with_scratch(&mut line, &mut scratch);
-                axis.inverse.process_with_scratch(&mut line, &mut scratch);
+                forward.process_with_scratch(&mut line, &mut scratch);
+                inverse.process_with_scratch(&mut line, &mut scratch);
             }
         }
     }
 
     /// Bytes that the plan keeps and that a solve with so many sources and outputs uses beside the fields themselves.
     pub fn bytes(&self, sources: usize, outputs: usize) -> usize {
-        let spectra = sources.max(outputs) * 2 * self.engine.spectrum();
+        let spectra = sources.max(outputs) * self.engine.spectrum();
         size_of::<T>() * (self.engine.kernel.len() + spectra)
     }
 }

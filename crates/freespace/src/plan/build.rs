@@ -1,6 +1,6 @@
 //! From a mesh, a kernel and boundaries to transforms and Ĝ.
 
-use super::axis::{Axis, RealTransforms, fast_length};
+use super::axis::{Axis, fast_length};
 use super::boundary::{Boundary, Continuation};
 use super::engine::Engine;
 use super::estimate::Estimate;
@@ -8,6 +8,7 @@ use super::memory;
 use super::octant::{Mixed, Octant};
 use super::real::Real;
 use crate::error::FreeSpaceError;
+use crate::fft::Machine;
 use crate::kernel::{Gaussian, Kernel, Radial, Spectral, Truncated, default_smoothing, passed};
 use crate::mesh::Mesh;
 
@@ -106,10 +107,11 @@ impl Layout {
 
     /// The engine with this Ĝ.
     pub(super) fn engine<T: Real>(&self, octant: Octant, estimate: Option<(usize, f64)>) -> Engine<T> {
-        let all = self.lengths().iter().map(|&n| n as f64).product::<f64>();
+        // Spectra of the first direction are twice what they should be.
+        let all = 2.0 * self.lengths().iter().map(|&n| n as f64).product::<f64>();
         Engine {
             axes: std::array::from_fn(|a| Axis::new(self.points[a], &self.lines[a], self.spacing[a])),
-            real: RealTransforms::new(self.lines[0].len),
+            machine: Machine::new::<T>(),
             // In place where the type is the same.
             kernel: octant.values.into_iter().map(|g| T::rounded(g / all)).collect(),
             estimate: estimate

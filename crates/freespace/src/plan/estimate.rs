@@ -2,8 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use rustfft::num_complex::Complex;
-
 use super::real::Real;
 
 /// The transform of `G_(m+2) - G_m`, `sigma^2/2 X^(m/2-1) / (m/2)! e^-X` with `X = (k sigma)^2 / 2`, as factors of each
@@ -34,16 +32,14 @@ impl<T: Real> Estimate<T> {
         }
     }
 
-    /// Multiplies a line of the third direction, of which `half` places have wave numbers of their own.
-    pub(super) fn apply(&self, [i, j]: [usize; 2], half: usize, line: &mut [Complex<T>]) {
+    /// The values for the wave numbers of the third direction, at two wave numbers of the others.
+    pub(super) fn line(&self, [i, j]: [usize; 2]) -> impl Iterator<Item = T> {
         let exponent = self.exponents[0][i] + self.exponents[1][j];
         let factor = self.scale * self.factors[0][i] * self.factors[1][j];
-        let len = line.len();
-        for (k, value) in line.iter_mut().enumerate() {
-            let k = if k < half { k } else { len - k };
-            let x = exponent + self.exponents[2][k];
+        self.exponents[2].iter().zip(&self.factors[2]).map(move |(x, f)| {
+            let x = exponent + *x;
             let power = (0..self.power).fold(T::one(), |p, _| p * x);
-            *value = *value * (factor * self.factors[2][k] * power);
-        }
+            factor * *f * power
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! Plans: everything that a mesh and a kernel determine, for as many sources as wanted.
 
+mod aligned;
 mod axis;
 mod bare;
 mod boundary;
@@ -7,13 +8,13 @@ mod build;
 mod cosine;
 mod engine;
 mod estimate;
+mod first;
 mod memory;
 mod octant;
 mod output;
 mod real;
 mod recipe;
 mod tile;
-mod transpose;
 
 use crate::error::FreeSpaceError;
 use crate::kernel::{Kernel, Radial};
@@ -197,7 +198,8 @@ impl<const D: usize, T: Real> Plan<D, T> {
         let phases = shift.iter().any(|s| *s != 0.0).then(|| {
             let mut along = [0.0; 3];
             (0..D).for_each(|a| along[slot::<D>(a)] = shift[a]);
-            std::array::from_fn(|a| self.engine.axes[a].phases(along[a]))
+            let [x, y, z] = &self.engine.axes;
+            [x.phases(along[0]), y.phases_at(along[1]), z.phases_at(along[2])]
         });
         outputs.resize_with(wanted.len(), Vec::new);
         self.engine.run(sources, &Recipe::new(wanted, phases), &mut workspace.spectra, outputs);

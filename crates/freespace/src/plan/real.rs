@@ -5,8 +5,10 @@ use std::sync::Arc;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftNum, FftPlanner};
 
+use crate::fft::Vectors;
+
 /// `f64` or `f32`: the type of the values and of the transforms. Kernels are evaluated in `f64` always.
-pub trait Real: FftNum + Default {
+pub trait Real: FftNum + Default + Vectors {
     /// The nearest number of this type.
     fn rounded(value: f64) -> Self;
     /// The same number.

@@ -5,8 +5,6 @@
 //! first one until the second is. For phi and its gradient that makes two transforms of the third direction, three of the
 //! second and four of the first, where four of each had to be done apart.
 
-use rustfft::num_complex::Complex;
-
 use super::output::{Term, Wanted};
 
 /// What has to be done for a list of outputs.
@@ -18,8 +16,8 @@ pub(super) struct Recipe<T> {
     pub(super) middle: usize,
     /// For each output, the array that is transformed back in the first direction.
     pub(super) last: Vec<Last>,
-    /// Factors of each direction that move all results.
-    pub(super) phases: Option<[Vec<Complex<T>>; 3]>,
+    /// Factors of each direction that move all results, real and imaginary parts.
+    pub(super) phases: Option<[Vec<[T; 2]>; 3]>,
 }
 
 /// A sum of sources and derivatives times Ĝ, or times the estimate of its error.
@@ -43,7 +41,18 @@ pub(super) struct Last {
 }
 
 impl<T> Recipe<T> {
-    pub(super) fn new(wanted: Vec<Wanted>, phases: Option<[Vec<Complex<T>>; 3]>) -> Self {
+    /// The only thing to be done in the third direction, if it is a product with real numbers of one source.
+    pub(super) fn alone(&self) -> Option<&Deep> {
+        match (&self.deep[..], &self.phases) {
+            ([deep], None) => match deep.terms[..] {
+                [Term { axis: None, sign: 1.0, .. }] if deep.along.is_none() => Some(deep),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    pub(super) fn new(wanted: Vec<Wanted>, phases: Option<[Vec<[T; 2]>; 3]>) -> Self {
         let mut recipe = Self { deep: Vec::new(), middle: 0, last: Vec::new(), phases };
         for Wanted { mut terms, estimate } in wanted {
             // What a single term is multiplied by in the first two directions can wait until they are transformed back.

@@ -12,6 +12,12 @@ const ORDER_MARGIN: f64 = 0.05;
 /// Least order of M6*, whose error is of fifth order.
 const M6_ORDER: f64 = 4.5;
 
+/// How far the order of polynomials may stay below the number of their points: as far as that of M6*.
+const POLYNOMIAL_MARGIN: f64 = 0.5;
+
+/// Errors on nodes over those on cells.
+const CENTRINGS: [f64; 2] = [0.95, 1.05];
+
 /// How far from figures that have two digits.
 const TWO_DIGITS: [f64; 2] = [0.9, 1.1];
 
@@ -69,7 +75,17 @@ pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
         lifted.map(|(ten, six)| ten / six),
         0.05,
     );
+    for how in ["shift", "ten points"] {
+        let [cells, nodes] =
+            ["one patch", "nodes"].map(|centring| error(&format!("{centring}, {how}"), 6, finest));
+        let claim = format!("m = 6, {how}: error on nodes over that on cells");
+        claims.within(CASE, claim, nodes.zip(cells).map(|(nodes, cells)| nodes / cells), CENTRINGS);
+    }
     if options.effort > Effort::Quick {
+        for (points, name) in [(6.0, "one patch, six points"), (8.0, "one patch, eight points")] {
+            let claim = format!("{name}: order at m = 10, {points} in theory");
+            claims.at_least(CASE, claim, rate(name, 10), points - POLYNOMIAL_MARGIN);
+        }
         figures(&error, claims);
     }
     scales(runs, options, claims);

@@ -24,6 +24,7 @@ pub(super) struct Layout {
     inner: Option<[[f64; 2]; 2]>,
     /// Errors count in the innermost patches alone.
     inside: bool,
+    centring: Centring,
 }
 
 const ROUND: [[f64; 2]; 2] = [[-0.5625; 2], [0.5625; 2]];
@@ -41,12 +42,22 @@ const ONE: Layout = Layout {
     boxes: &[ROUND],
     inner: None,
     inside: false,
+    centring: Centring::Cell,
 };
 
-pub(super) const LAYOUTS: [Layout; 9] = [
+pub(super) const LAYOUTS: [Layout; 13] = [
     ONE,
     Layout { name: "one patch, M6*", superposition: Superposition::M6Star, ..ONE },
+    Layout { name: "one patch, six points", superposition: Superposition::Lagrange(6), ..ONE },
+    Layout { name: "one patch, eight points", superposition: Superposition::Lagrange(8), ..ONE },
     Layout { name: "one patch, ten points", superposition: Superposition::Lagrange(10), ..ONE },
+    Layout { name: "nodes, shift", centring: Centring::Node, ..ONE },
+    Layout {
+        name: "nodes, ten points",
+        centring: Centring::Node,
+        superposition: Superposition::Lagrange(10),
+        ..ONE
+    },
     Layout { name: "ratio 3, shift", ratio: 3, ..ONE },
     Layout { name: "ratio 3, M6*", ratio: 3, superposition: Superposition::M6Star, ..ONE },
     Layout { name: "four patches, shift", boxes: &QUARTERS, ..ONE },
@@ -69,13 +80,13 @@ pub(super) const LAYOUTS: [Layout; 9] = [
 const WANTED: [Output; 2] = [Output::Curl { axis: 0 }, Output::Curl { axis: 1 }];
 
 /// The base mesh of `n` cells in each direction.
-fn base(n: usize) -> Result<Mesh<2>, String> {
-    Mesh::of_box([-1.0; 2], [1.0; 2], [n; 2], Centring::Cell).map_err(|e| e.to_string())
+fn base(n: usize, centring: Centring) -> Result<Mesh<2>, String> {
+    Mesh::of_box([-1.0; 2], [1.0; 2], [n; 2], centring).map_err(|e| e.to_string())
 }
 
 /// The bump of radius 1/2 with patches; errors over all points that no finer patch covers.
 pub(super) fn run(layout: &Layout, order: usize, n: usize) -> Result<Run, String> {
-    let base = base(n)?;
+    let base = base(n, layout.centring)?;
     let mut patches: Vec<Patch<2>> =
         layout.boxes.iter().map(|[min, max]| Patch::covering(&base, *min, *max, layout.ratio)).collect();
     if let Some([min, max]) = layout.inner {
@@ -208,7 +219,7 @@ fn two_scales() -> Vec<Field> {
 /// The source with two scales, on one mesh of `n` cells in each direction.
 pub(super) fn uniform(order: usize, n: usize) -> Result<Run, String> {
     let bumps = two_scales();
-    let mesh = base(n)?;
+    let mesh = base(n, Centring::Cell)?;
     let kernel = Kernel::Gaussian { order, smoothing: Some(2.0) };
     let start = Instant::now();
     let plan: Plan<2> = Plan::new(&mesh, kernel).map_err(|e| e.to_string())?;
@@ -244,12 +255,12 @@ pub(super) fn refined(
 ) -> Result<Run, String> {
     let bumps = two_scales();
     let (_, centre, radius) = TWO_SCALES[1];
-    let base = base(n >> levels)?;
+    let base = base(n >> levels, Centring::Cell)?;
     let mut patches: Vec<Patch<2>> = Vec::new();
     // Boxes in cells of the base, divided by the refinement so far.
     let mut corner = [0; 2];
     for level in 0..levels {
-        let parent_mesh = self::base(n >> (levels - level))?;
+        let parent_mesh = self::base(n >> (levels - level), Centring::Cell)?;
         let half = radius + BEYOND * parent_mesh.spacing()[0];
         let round = Patch::covering(&parent_mesh, centre.map(|c| c - half), centre.map(|c| c + half), 2);
         let first = std::array::from_fn(|a| round.first[a] - corner[a]);

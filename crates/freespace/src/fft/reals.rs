@@ -1,0 +1,148 @@
+//! Real lines: as many in the real parts as in the imaginary parts of packs, since the transforms of two real lines can be told
+//! apart by their symmetry.
+
+use super::lanes::{Lanes, Pair, Work};
+use crate::plan::Real;
+
+/// Takes the first `count` numbers of as many lines as there are lanes, to every `stride`-th pack from `first` on.
+pub(crate) struct FromReals<'a, T> {
+    pub(crate) lines: &'a [&'a [T]],
+    pub(crate) count: usize,
+    pub(crate) values: &'a mut [T],
+    pub(crate) first: usize,
+    pub(crate) stride: usize,
+}
+
+impl<T: Real> Work<T> for FromReals<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let Self { lines, count, values, first, stride } = self;
+        let mut done = 0;
+        if let [a, b, c, d] = lines
+            && S::COUNT == 4
+        {
+            let packs = &mut s.packs_mut(values)[first..];
+            let rows = s.packs(&a[..count]).iter().zip(s.packs(&b[..count]));
+            let rows = rows.zip(s.packs(&c[..count])).zip(s.packs(&d[..count]));
+            for (to, (((a, b), c), d)) in packs.chunks_mut(4 * stride).zip(rows) {
+                let places = s.transpose([*a, *b, *c, *d]);
+                to[0] = places[0];
+                to[stride] = places[1];
+                to[2 * stride] = places[2];
+                to[3 * stride] = places[3];
+                done += 4;
+            }
+        }
+        for (lane, line) in lines.iter().enumerate() {
+            for (place, value) in line[..count].iter().enumerate().skip(done) {
+                values[(first + place * stride) * S::COUNT + lane] = *value;
+            }
+        }
+    }
+}
+
+/// Puts the first `count` numbers back into up to as many lines as there are lanes.
+pub(crate) struct ToReals<'a, 'b, T> {
+    pub(crate) lines: &'a mut [&'b mut [T]],
+    pub(crate) count: usize,
+    pub(crate) values: &'a [T],
+    pub(crate) first: usize,
+    pub(crate) stride: usize,
+}
+
+impl<T: Real> Work<T> for ToReals<'_, '_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let Self { lines, count, values, first, stride } = self;
+        let mut done = 0;
+        if let [a, b, c, d] = &mut lines[..]
+            && S::COUNT == 4
+        {
+            let packs = &s.packs(values)[first..];
+            let rows = s.packs_mut(&mut a[..count]).iter_mut().zip(s.packs_mut(&mut b[..count]));
+            let rows = rows.zip(s.packs_mut(&mut c[..count])).zip(s.packs_mut(&mut d[..count]));
+            for (from, (((a, b), c), d)) in packs.chunks(4 * stride).zip(rows) {
+                [*a, *b, *c, *d] =
+                    s.transpose_back([from[0], from[stride], from[2 * stride], from[3 * stride]]);
+                done += 4;
+            }
+        }
+        for (lane, line) in lines.iter_mut().enumerate() {
+            for (place, value) in line[..count].iter_mut().enumerate().skip(done) {
+                *value = values[(first + place * stride) * S::COUNT + lane];
+            }
+        }
+    }
+}
+
+/// Rows of a spectrum, one for each wave number, in which lines are columns.
+pub(crate) struct Spectrum<'a, T> {
+    pub(crate) rows: &'a mut [T],
+    /// Numbers from one row to the next.
+    pub(crate) row: usize,
+    /// The first column.
+    pub(crate) at: usize,
+}
+
+/// Twice the spectra of the real lines, from the transform of packs: at wave number k, `z_k` and `z_-k` lie at `places[k]`.
+pub(crate) struct Untangle<'a, T> {
+    pub(crate) values: &'a [T],
+    pub(crate) places: &'a [[u32; 2]],
+    pub(crate) spectrum: Spectrum<'a, T>,
+}
+
+impl<T: Real> Work<T> for Untangle<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let pairs = s.packs(self.values).as_chunks::<2>().0;
+        let Spectrum { rows, row, at } = self.spectrum;
+        for (row, [p, q]) in rows.chunks_exact_mut(row).zip(self.places) {
+            let (z, w) = (pairs[*p as usize], pairs[*q as usize]);
+            let even: Pair<S::Pack> = [s.add(z[0], w[0]), s.sub(z[1], w[1])];
+            let odd: Pair<S::Pack> = [s.add(z[1], w[1]), s.sub(w[0], z[0])];
+            if let [a, b, c, d, ..] = s.packs_mut(&mut row[2 * at..]) {
+                [*a, *b] = s.join(even);
+                [*c, *d] = s.join(odd);
+            }
+        }
+    }
+}
+
+/// The inverse, times a real factor for each wave number, or times i and this factor.
+pub(crate) struct Tangle<'a, T> {
+    pub(crate) values: &'a mut [T],
+    pub(crate) places: &'a [[u32; 2]],
+    pub(crate) rows: &'a [T],
+    pub(crate) row: usize,
+    pub(crate) at: usize,
+    pub(crate) factors: Option<&'a [T]>,
+    pub(crate) turned: bool,
+}
+
+impl<T: Real> Work<T> for Tangle<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
+        let zero = s.splat(T::zero());
+        for (k, (row, [p, q])) in self.rows.chunks_exact(self.row).zip(self.places).enumerate() {
+            let [a, b, c, d, ..] = s.packs(&row[2 * self.at..]) else { continue };
+            let (mut even, mut odd) = (s.split([*a, *b]), s.split([*c, *d]));
+            if let Some(factors) = self.factors {
+                let f = s.splat(factors[k]);
+                even = [s.mul(even[0], f), s.mul(even[1], f)];
+                odd = [s.mul(odd[0], f), s.mul(odd[1], f)];
+            }
+            if self.turned {
+                even = [s.sub(zero, even[1]), even[0]];
+                odd = [s.sub(zero, odd[1]), odd[0]];
+            }
+            // The spectrum of a real line is real at both ends, up to round-off.
+            if p == q {
+                pairs[*p as usize] = [even[0], odd[0]];
+            } else {
+                pairs[*p as usize] = [s.sub(even[0], odd[1]), s.add(even[1], odd[0])];
+                pairs[*q as usize] = [s.add(even[0], odd[1]), s.sub(odd[0], even[1])];
+            }
+        }
+    }
+}

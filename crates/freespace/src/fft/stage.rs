@@ -1,0 +1,211 @@
+//! One stage of a transform: butterflies of one radix and the factors between them.
+//!
+//! Forward stages leave wave numbers in the order that their divisions bring about, inverse ones take them in this order and
+//! leave values in their own (decimation in frequency, then in time), so that nothing is ever reordered.
+
+use std::f64::consts::TAU;
+
+use super::butterfly;
+use super::lanes::{Lanes, Pair, Work, add, add_turned, sub, sub_turned, swapped, times};
+use crate::plan::Real;
+
+/// Divides blocks of `radix * below` numbers into `radix` blocks.
+#[derive(Debug)]
+pub(super) struct Stage<T> {
+    pub(super) radix: usize,
+    pub(super) below: usize,
+    /// `exp(-2 pi i j k / n)` for place j of a block of n and k from 1 on, which runs fastest.
+    factors: Vec<[T; 2]>,
+}
+
+impl<T: Real> Stage<T> {
+    pub(super) fn new(radix: usize, below: usize) -> Self {
+        let n = radix * below;
+        let factor = |product: usize| {
+            let (sin, cos) = (-TAU * (product % n) as f64 / n as f64).sin_cos();
+            [T::rounded(cos), T::rounded(sin)]
+        };
+        let factors = (0..below).flat_map(|j| (1..radix).map(move |k| j * k)).map(factor).collect();
+        Self { radix, below, factors }
+    }
+}
+
+/// What a stage does with a block.
+#[derive(Clone, Copy)]
+pub(super) enum Step {
+    Forward,
+    Inverse,
+    /// Forward, where the upper half of the block is zero and not looked at. Radices 2 and 4.
+    FromHalf,
+    /// Inverse, where only the lower half is wanted. Radices 2 and 4.
+    ToHalf,
+}
+
+/// A stage for every block of `values`.
+pub(super) struct Blocks<'a, T> {
+    pub(super) stage: &'a Stage<T>,
+    pub(super) step: Step,
+    pub(super) values: &'a mut [T],
+}
+
+impl<T: Real> Work<T> for Blocks<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let Stage { radix, below, ref factors } = *self.stage;
+        let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
+        for block in pairs.chunks_exact_mut(radix * below) {
+            match (self.step, radix) {
+                (Step::Forward, 2) => forward_two(s, block, factors),
+                (Step::Forward, 3) => forward_three(s, block, factors),
+                (Step::Forward, 4) => forward_four(s, block, factors),
+                (Step::Forward, 5) => forward_five(s, block, factors),
+                (Step::Forward, _) => forward_eight(s, block, factors),
+                (Step::Inverse, 2) => inverse_two(s, block, factors),
+                (Step::Inverse, 3) => inverse_three(s, block, factors),
+                (Step::Inverse, 4) => inverse_four(s, block, factors),
+                (Step::Inverse, 5) => inverse_five(s, block, factors),
+                (Step::Inverse, _) => inverse_eight(s, block, factors),
+                (Step::FromHalf, 2) => from_half_two(s, block, factors),
+                (Step::FromHalf, _) => from_half_four(s, block, factors),
+                (Step::ToHalf, 2) => to_half_two(s, block, factors),
+                (Step::ToHalf, _) => to_half_four(s, block, factors),
+            }
+        }
+    }
+}
+
+/// Loops over the places of a block, which is divided into parts `$part`: forward, a butterfly and then factors; inverse, the
+/// other way round, with real and imaginary parts exchanged.
+macro_rules! stage {
+    ($forward:ident, $inverse:ident, $butterfly:ident, $radix:literal, [$($part:ident $place:literal),*]) => {
+        #[inline(always)]
+        fn $forward<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
+            let factors = factors.as_chunks::<{ $radix - 1 }>().0;
+            let below = factors.len();
+            let (first, rest) = block.split_at_mut(below);
+            $(let ($part, rest) = rest.split_at_mut(below);)*
+            debug_assert!(rest.is_empty(), "a block has {} parts", $radix);
+            for j in 0..below {
+                let y = butterfly::$butterfly(s, [first[j], $($part[j]),*]);
+                first[j] = y[0];
+                $($part[j] = times(s, y[$place], factors[j][$place - 1]);)*
+            }
+        }
+
+        #[inline(always)]
+        fn $inverse<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
+            let factors = factors.as_chunks::<{ $radix - 1 }>().0;
+            let below = factors.len();
+            let (first, rest) = block.split_at_mut(below);
+            $(let ($part, rest) = rest.split_at_mut(below);)*
+            debug_assert!(rest.is_empty(), "a block has {} parts", $radix);
+            for j in 0..below {
+                $(let $part = &mut $part[j];)*
+                let y = butterfly::$butterfly(
+                    s,
+                    [swapped(first[j]), $(times(s, swapped(*$part), factors[j][$place - 1])),*],
+                );
+                first[j] = swapped(y[0]);
+                $(*$part = swapped(y[$place]);)*
+            }
+        }
+    };
+}
+
+stage!(forward_two, inverse_two, two, 2, [b 1]);
+stage!(forward_three, inverse_three, three, 3, [b 1, c 2]);
+stage!(forward_four, inverse_four, four, 4, [b 1, c 2, d 3]);
+stage!(forward_five, inverse_five, five, 5, [b 1, c 2, d 3, e 4]);
+stage!(forward_eight, inverse_eight, eight, 8, [b 1, c 2, d 3, e 4, f 5, g 6, h 7]);
+
+#[inline(always)]
+fn from_half_two<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
+    let (low, high) = block.split_at_mut(factors.len());
+    for ((a, b), w) in low.iter().zip(high).zip(factors) {
+        *b = times(s, *a, *w);
+    }
+}
+
+#[inline(always)]
+fn to_half_two<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
+    let (low, high) = block.split_at_mut(factors.len());
+    for ((a, b), w) in low.iter_mut().zip(high).zip(factors) {
+        *a = swapped(add(s, swapped(*a), times(s, swapped(*b), *w)));
+    }
+}
+
+#[inline(always)]
+fn from_half_four<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
+    let factors = factors.as_chunks::<3>().0;
+    let below = factors.len();
+    let (first, rest) = block.split_at_mut(below);
+    let (second, rest) = rest.split_at_mut(below);
+    let (third, fourth) = rest.split_at_mut(below);
+    let fourth = &mut fourth[..below];
+    for j in 0..below {
+        let (a, b, w) = (first[j], second[j], &factors[j]);
+        first[j] = add(s, a, b);
+        second[j] = times(s, sub_turned(s, a, b), w[0]);
+        third[j] = times(s, sub(s, a, b), w[1]);
+        fourth[j] = times(s, add_turned(s, a, b), w[2]);
+    }
+}
+
+#[inline(always)]
+fn to_half_four<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
+    let factors = factors.as_chunks::<3>().0;
+    let below = factors.len();
+    let (first, rest) = block.split_at_mut(below);
+    let (second, rest) = rest.split_at_mut(below);
+    let (third, fourth) = rest.split_at_mut(below);
+    let fourth = &fourth[..below];
+    for j in 0..below {
+        let w = &factors[j];
+        let (a, b) = (swapped(first[j]), times(s, swapped(second[j]), w[0]));
+        let (c, d) = (times(s, swapped(third[j]), w[1]), times(s, swapped(fourth[j]), w[2]));
+        first[j] = swapped(add(s, add(s, a, c), add(s, b, d)));
+        second[j] = swapped(sub_turned(s, sub(s, a, c), sub(s, b, d)));
+    }
+}
+
+/// The last stage forward, a product with real numbers and the first stage back, for blocks that fit into registers:
+/// `weights` has a pack for each wave number up to the Nyquist frequency, `fold` the one that belongs to each place.
+pub(super) struct Middle<'a, T> {
+    pub(super) radix: usize,
+    pub(super) values: &'a mut [T],
+    pub(super) weights: &'a [T],
+    pub(super) fold: &'a [u32],
+}
+
+/// A number times its weight, exchanged.
+#[inline(always)]
+fn weighed<T, S: Lanes<T>>(s: S, a: Pair<S::Pack>, weights: &[S::Pack], place: u32) -> Pair<S::Pack> {
+    let weight = weights[place as usize];
+    [s.mul(a[1], weight), s.mul(a[0], weight)]
+}
+
+/// Butterfly, weights, butterfly for all blocks of a radix.
+macro_rules! middle {
+    ($s:ident, $pairs:ident, $weights:ident, $fold:ident, $butterfly:ident, $radix:literal, [$($place:literal),*]) => {
+        for (x, p) in $pairs.as_chunks_mut::<$radix>().0.iter_mut().zip($fold.as_chunks::<$radix>().0) {
+            let y = butterfly::$butterfly($s, *x);
+            let y = butterfly::$butterfly($s, [$(weighed($s, y[$place], $weights, p[$place])),*]);
+            *x = [$(swapped(y[$place])),*];
+        }
+    };
+}
+
+impl<T: Real> Work<T> for Middle<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
+        let (weights, fold) = (s.packs(self.weights), self.fold);
+        match self.radix {
+            2 => middle!(s, pairs, weights, fold, two, 2, [0, 1]),
+            3 => middle!(s, pairs, weights, fold, three, 3, [0, 1, 2]),
+            4 => middle!(s, pairs, weights, fold, four, 4, [0, 1, 2, 3]),
+            5 => middle!(s, pairs, weights, fold, five, 5, [0, 1, 2, 3, 4]),
+            _ => middle!(s, pairs, weights, fold, eight, 8, [0, 1, 2, 3, 4, 5, 6, 7]),
+        }
+    }
+}
