@@ -5,6 +5,16 @@ use meshless_sparse::{Cluster, ComponentInfo, DEFAULT_THRESHOLD, DifferenceMatri
 
 use crate::{Condition, MethodError, Problem, adjacent_pairs};
 
+/// A row holds a stiff region if it is tied to the outside by this part of its largest entry: about as many digits are lost
+/// where the constant is no unknown of its own.
+const HELD: f64 = 1e-4;
+
+/// And by so many times what the ratio of the diffusivities makes of a balance.
+const BALANCED: f64 = 100.0;
+
+/// Share of the rows reaching outside of which this must be true: unlucky cells are rarer.
+const HOLDING: f64 = 0.1;
+
 /// The change of unknowns for a problem in which something floats.
 pub(super) struct Floating {
     pub(super) split: Split,
@@ -23,18 +33,85 @@ pub(crate) struct FloatingParts {
 
 impl FloatingParts {
     pub(crate) fn find<const D: usize>(problem: &Problem<'_, D>) -> Result<Self, MethodError> {
-        let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
-        let graph = RegionGraph::new(problem.cloud, problem.labels, &pairs)?;
+        let graph = region_graph(problem)?;
         if !levels_differ(problem) {
             return Ok(Self { graph, clusters: Vec::new() });
         }
-        let count = graph.components().len();
-        let mut components = component_infos(problem, &graph);
-        let mut adjacency: Vec<Vec<u32>> = (0..count as u32).map(|c| graph.touching(c).to_vec()).collect();
-        add_surroundings(problem, &graph, &mut components, &mut adjacency);
+        let (components, adjacency) = picture(problem, &graph);
         let clusters = clusters(&components, &adjacency, DEFAULT_THRESHOLD);
         Ok(Self { graph, clusters })
     }
+}
+
+fn region_graph<const D: usize>(problem: &Problem<'_, D>) -> Result<RegionGraph, MethodError> {
+    let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
+    Ok(RegionGraph::new(problem.cloud, problem.labels, &pairs)?)
+}
+
+/// The components, and which of them touch.
+fn picture<const D: usize>(
+    problem: &Problem<'_, D>,
+    graph: &RegionGraph,
+) -> (Vec<ComponentInfo>, Vec<Vec<u32>>) {
+    let count = graph.components().len() as u32;
+    let mut components = component_infos(problem, graph);
+    let mut adjacency: Vec<Vec<u32>> = (0..count).map(|c| graph.touching(c).to_vec()).collect();
+    add_surroundings(problem, graph, &mut components, &mut adjacency);
+    (components, adjacency)
+}
+
+/// The clusters that the rows leave afloat.
+///
+/// Balances tie a stiff region to soft surroundings by entries smaller than its others by the contrast. Stencils that reach
+/// across the interface, with the smeared diffusivity or without regard to it, have entries of one size on both sides: they
+/// hold the region whatever the contrast. Its nodal values are well determined then, and not constant to as many digits as
+/// splitting would ask for. Components with such rows count as fixed.
+fn not_held<const D: usize>(
+    problem: &Problem<'_, D>,
+    graph: &RegionGraph,
+    matrix: &DifferenceMatrix,
+    component: &[u32],
+) -> Vec<Cluster> {
+    let (mut components, adjacency) = picture(problem, graph);
+    loop {
+        let found = clusters(&components, &adjacency, DEFAULT_THRESHOLD);
+        let held: Vec<&Cluster> =
+            found.iter().filter(|cluster| is_held(cluster, &components, matrix, component)).collect();
+        if held.is_empty() {
+            return found;
+        }
+        for &member in held.iter().flat_map(|cluster| &cluster.own) {
+            components[member as usize].touches_fixed = true;
+        }
+    }
+}
+
+/// Whether rows of a cluster that reach outside tie it to there by far more than balances would.
+fn is_held(
+    cluster: &Cluster,
+    components: &[ComponentInfo],
+    matrix: &DifferenceMatrix,
+    component: &[u32],
+) -> bool {
+    let inside = |i: usize| cluster.members.binary_search(&component[i]).is_ok();
+    let stiff = cluster.members.iter().map(|&m| components[m as usize].eta_min).fold(f64::INFINITY, f64::min);
+    let (mut crossing, mut holding) = (0_u32, 0_u32);
+    for i in (0..matrix.n()).filter(|&i| inside(i)) {
+        let (columns, row) = matrix.row(i);
+        let (mut tie, mut soft, mut largest) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (&j, a) in columns.iter().zip(row) {
+            largest = largest.max(a.abs());
+            if !inside(j as usize) {
+                tie += a;
+                soft = soft.max(components[component[j as usize] as usize].eta_max);
+            }
+        }
+        if soft > 0.0 {
+            crossing += 1;
+            holding += u32::from(tie.abs() > largest * (BALANCED * soft / stiff).max(HELD));
+        }
+    }
+    f64::from(holding) > HOLDING * f64::from(crossing)
 }
 
 /// The change of unknowns for a problem; `None` where nothing floats. `nodes` names the node of every unknown.
@@ -46,12 +123,13 @@ pub(super) fn split<const D: usize>(
     if !levels_differ(problem) {
         return Ok(None);
     }
-    let FloatingParts { graph, clusters: found } = FloatingParts::find(problem)?;
+    let graph = region_graph(problem)?;
     let count = graph.components().len();
+    let component: Vec<u32> = nodes.iter().map(|&node| graph.component_of(node)).collect();
+    let found = not_held(problem, &graph, matrix, &component);
     if found.is_empty() {
         return Ok(None);
     }
-    let component: Vec<u32> = nodes.iter().map(|&node| graph.component_of(node)).collect();
     if !all_have_unknowns(&found, &component, count) {
         // A cluster of prescribed values alone has no constant to solve for; the nodal values do for such a scene.
         return Ok(None);

@@ -5,21 +5,26 @@ use meshless_sparse::{Bordered, Csr, Split};
 use super::{SystemParams, floating, given};
 use crate::{Discretization, MethodError, Problem};
 
-/// A matrix with a right-hand side, as a discretisation hands them to the linear solver: prescribed values eliminated,
-/// constants of floating regions split off, their pinned nodes and that of a pure Neumann problem fixed.
+/// The equations that the linear solver gets: prescribed values eliminated, and the constants of floating regions (in a pure
+/// Neumann problem also what is not balanced) as extra unknowns.
 #[derive(Debug, Clone)]
 pub struct LinearSystem {
-    /// The matrix.
-    pub matrix: Csr,
-    /// The right-hand side.
-    pub rhs: Vec<f64>,
-    /// Unknowns beside the nodes: each costs one more solution with the same matrix.
-    pub extra: usize,
+    /// All equations, as [`solve`](super::solve) solves them.
+    pub bordered: Bordered,
 }
 
 impl LinearSystem {
-    fn of(system: &Bordered) -> Self {
-        Self { matrix: system.pinned_matrix(), rhs: system.pinned_rhs(), extra: system.extra() }
+    /// The equations of the nodes alone, those of pinned nodes replaced by `w = 0`: a square matrix for other solvers. The
+    /// whole needs one more solution with it for each extra unknown.
+    #[must_use]
+    pub fn matrix(&self) -> Csr {
+        self.bordered.pinned_matrix()
+    }
+
+    /// The right-hand side that belongs to [`LinearSystem::matrix`].
+    #[must_use]
+    pub fn rhs(&self) -> Vec<f64> {
+        self.bordered.pinned_rhs()
     }
 }
 
@@ -33,7 +38,7 @@ pub fn linear_system<const D: usize>(
     params: &SystemParams,
 ) -> Result<LinearSystem, MethodError> {
     if let Some(constants) = &discretization.constants {
-        return Ok(LinearSystem::of(&given::bordered(problem, discretization, constants)?.0));
+        return Ok(LinearSystem { bordered: given::bordered(problem, discretization, constants)?.0 });
     }
     let mut known = problem.dirichlet();
     let nodes = known.len();
@@ -50,5 +55,5 @@ pub fn linear_system<const D: usize>(
     } else {
         Split::trivial(n).apply_neumann(&reduced.matrix, &reduced.rhs, &discretization.volumes, n / 2)?
     };
-    Ok(LinearSystem::of(&bordered))
+    Ok(LinearSystem { bordered })
 }

@@ -20,6 +20,9 @@ const DIRECT_LIMIT: [f64; 3] = [f64::INFINITY, 30_000.0, 1_500.0];
 /// The same where multigrid does not serve. In the plane it is memory that ends it, about 4 GB.
 const DIRECT_LIMIT_WITHOUT_MULTIGRID: [f64; 3] = [f64::INFINITY, 250_000.0, 1_500.0];
 
+/// Unknowns up to which factors step in where nothing else solves a system: by memory, and in space by minutes, too.
+const DIRECT_MAX: [usize; 3] = [usize::MAX, 250_000, 20_000];
+
 /// Relative true residual at which the Krylov solver stops.
 const TOLERANCE: f64 = 1e-11;
 
@@ -116,24 +119,25 @@ fn knows_slits(name: MethodName) -> bool {
     matches!(name, MethodName::Auto | MethodName::ParticleDifference)
 }
 
-/// Contrast above which multigrid does not serve stencils that are not conservative: 17 to 21 products at 1e6, 25 at 1e7, no end
-/// at 1e8. They make the equations of a floating region all but contradict each other.
-const MULTIGRID_CONTRAST: f64 = 3e6;
-
-/// Methods whose matrices multigrid does not get along with.
+/// Matrices that multigrid does not get along with: equations of jumps at interface points, and one-sided stencils at slits, have
+/// no diagonal to smooth with.
 fn outpaces_multigrid(name: MethodName, survey: &Survey) -> bool {
-    let named =
-        matches!(name, MethodName::GfdmClassical | MethodName::GfdmPositive | MethodName::ImmersedInterface);
-    // Equations of jumps at interface points, and one-sided stencils at slits, have no diagonal to smooth with.
-    let indefinite =
-        name == MethodName::ParticleDifferenceExtended || survey.has(|e| matches!(e, Effect::Slits));
-    indefinite || (named && survey.contrast > MULTIGRID_CONTRAST)
+    name == MethodName::ParticleDifferenceExtended || survey.has(|e| matches!(e, Effect::Slits))
 }
+
+/// Other entries of a row, in diagonals, from which its unknown stays on every level; see `docs/multigrid.md`.
+const KEEP: f64 = 1.4;
 
 /// Rows of the sharp method have large entries of either sign, and those that cross an interface are not conservative: an
 /// incomplete factorisation smooths them better, and their columns need a restriction of their own; see `docs/sharp.md`.
-fn multigrid(method: MethodName) -> MultigridParams {
+/// Stencils that cross interfaces without balances have such rows there only, which coarse levels must leave as they are.
+fn multigrid(method: MethodName, survey: &Survey) -> MultigridParams {
     match method {
+        MethodName::GfdmClassical | MethodName::GfdmPositive | MethodName::ImmersedInterface
+            if survey.contrast > FLOATING_CONTRAST =>
+        {
+            MultigridParams { keep: KEEP, ..MultigridParams::default() }
+        }
         MethodName::Sharp => MultigridParams {
             smoother: SmootherKind::Ilu0,
             restriction: Restriction::Own,
@@ -158,10 +162,11 @@ pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknown
     SolverParams {
         kind,
         preconditioner: match kind {
-            SolverKind::Multigrid => PreconditionerKind::Multigrid(multigrid(method)),
+            SolverKind::Multigrid => PreconditionerKind::Multigrid(multigrid(method, survey)),
             _ => PreconditionerKind::Ilu0,
         },
         tolerance: TOLERANCE,
+        direct_max: DIRECT_MAX[scene.dimension - 1],
         ..SolverParams::default()
     }
 }

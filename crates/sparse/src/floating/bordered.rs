@@ -1,10 +1,10 @@
 //! Systems with a few extra unknowns, solved by block elimination.
 
-use super::eliminated::PreparedBordered;
+use super::prepared::PreparedBordered;
 use crate::csr::{Csr, for_each_row};
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
-use crate::solver::{SolveError, SolveInfo, SolverParams};
+use crate::solver::{SolveError, SolveInfo, SolverParams, reciprocal_power};
 
 /// `A w + B c = b` in `n` equations for `n` values `w` and `m` extra unknowns `c`, where `w = 0` at `m` pinned nodes.
 ///
@@ -92,6 +92,12 @@ impl Bordered {
         Ok(self)
     }
 
+    /// The scales, see [`Bordered::with_scales`]; empty where all are 1.
+    #[must_use]
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
     /// `x` becomes `s x`.
     pub(super) fn scale(&self, x: &mut [f64]) {
         x.iter_mut().zip(&self.scales).for_each(|(x, s)| *x *= s);
@@ -131,8 +137,28 @@ impl Bordered {
         &self.columns
     }
 
-    pub(super) fn pinned(&self) -> &[u32] {
+    /// The right-hand side, one element for each equation.
+    #[must_use]
+    pub fn rhs(&self) -> &[f64] {
+        &self.rhs
+    }
+
+    /// The node for each extra unknown where `w = 0`.
+    #[must_use]
+    pub fn pinned(&self) -> &[u32] {
         &self.pinned
+    }
+
+    /// Powers of two by which rows are multiplied for their entries to count alike, those of the nodes as they act on `w`:
+    /// in stiff regions they would count for nothing otherwise.
+    pub(super) fn factors(&self) -> Vec<f64> {
+        let mut factors = vec![0.0; self.n()];
+        for_each_row(&mut factors, |i, factor| {
+            let entries = self.matrix.row(i).1.iter();
+            let largest = entries.fold(self.matrix.diagonal(i).abs(), |m: f64, v| m.max(v.abs()));
+            *factor = if largest > 0.0 { reciprocal_power(largest) } else { 1.0 };
+        });
+        factors
     }
 
     /// The extra unknown for which a node is pinned, by node.

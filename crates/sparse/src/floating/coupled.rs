@@ -1,18 +1,16 @@
 //! A bordered system solved as one: GMRES on all equations, multigrid for those of the nodes, the Schur complement of a
 //! rough response to every extra unknown for the others.
 //!
-//! The vectors have one element for each node. As `w = 0` at the pinned nodes, their elements hold the extra unknowns, and
-//! the residuals of their equations. At the others, the unknown is `s w`, because prolongation takes constants for smooth:
-//! at moderate contrasts aggregates cross interfaces, where `w` jumps and `s w` does not.
+//! The elements of vectors that belong to pinned nodes hold the extra unknowns, and the residuals of their equations. At the
+//! others, the unknown is `s w`, because prolongation takes constants for smooth: at moderate contrasts aggregates cross
+//! interfaces, where `w` jumps and `s w` does not.
 
 use super::bordered::Bordered;
 use super::dense::DenseLu;
-use crate::csr::Csr;
+use super::joined::{Equations, take_extra};
 use crate::multigrid::Multigrid;
 use crate::precond::Preconditioner;
-use crate::solver::{
-    AUTO_RESTART, Levels, LinearOperator, Method, PATIENCE, System, iterate, reciprocal_power,
-};
+use crate::solver::{AUTO_RESTART, Levels, LinearOperator, Method, PATIENCE, Residuals, iterate};
 use crate::solver::{SolveError, SolveInfo, SolverParams};
 use crate::vector::axpy;
 
@@ -21,60 +19,6 @@ use crate::vector::axpy;
 const RESPONSE: f64 = 1e-2;
 
 const METHOD: Method = Method::Gmres { restart: AUTO_RESTART };
-
-/// The matrix `[A' B'; 0 1]` with the column of each extra unknown in the place of its pinned node, whose own column has
-/// only zeros to multiply: what multigrid is set up for, and all rows of the coupled matrix but those of the pinned nodes.
-/// And factors of the rows, by the sizes of their entries before the change of unknowns: in stiff regions they would
-/// count for nothing otherwise.
-pub(super) fn matrix(system: &Bordered) -> (Csr, Vec<f64>) {
-    let a = system.matrix().to_csr();
-    let pin_of = system.pin_of();
-    let mut entries: Vec<(u32, u32, f64)> = Vec::new();
-    for (&p, column) in system.pinned().iter().zip(system.columns()) {
-        entries.extend(column.iter().map(|&(row, value)| (row, p, value)));
-    }
-    entries.sort_unstable_by_key(|e| (e.0, e.1));
-    let (mut offsets, mut factors) = (vec![0], Vec::with_capacity(a.nrows()));
-    let (mut indices, mut values) = (Vec::with_capacity(a.nnz()), Vec::with_capacity(a.nnz()));
-    let mut next = 0;
-    for i in 0..a.nrows() {
-        let start = next;
-        while entries.get(next).is_some_and(|e| e.0 as usize == i) {
-            next += 1;
-        }
-        let (columns, row) = a.row(i);
-        let largest = row.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        factors.push(if largest > 0.0 { reciprocal_power(largest) } else { 1.0 });
-        if pin_of[i].is_some() {
-            indices.push(i as u32);
-            values.push(1.0);
-        } else {
-            let mut border = entries[start..next].iter().peekable();
-            for (&j, &v) in columns.iter().zip(row).filter(|(j, _)| pin_of[**j as usize].is_none()) {
-                while let Some(&&(_, p, value)) = border.peek().filter(|e| e.1 < j) {
-                    push_sum(&mut indices, &mut values, offsets[i], p, value);
-                    border.next();
-                }
-                indices.push(j);
-                values.push(v * system.inverse_scale(j as usize));
-            }
-            border.for_each(|&(_, p, value)| push_sum(&mut indices, &mut values, offsets[i], p, value));
-        }
-        offsets.push(indices.len());
-    }
-    (Csr::from_trusted(a.nrows(), offsets, indices, values), factors)
-}
-
-/// Appends an entry to the row that began at `start`, or adds to its last one where that is of the same column.
-fn push_sum(indices: &mut Vec<u32>, values: &mut Vec<f64>, start: usize, column: u32, value: f64) {
-    match (indices[start..].last(), values.last_mut()) {
-        (Some(&last), Some(sum)) if last == column => *sum += value,
-        _ => {
-            indices.push(column);
-            values.push(value);
-        }
-    }
-}
 
 /// What is computed once for all right-hand sides.
 #[derive(Debug)]
@@ -135,11 +79,6 @@ impl Coupled {
     }
 }
 
-/// Takes the extra unknowns out of the places of the pinned nodes, where `w` is zero.
-fn take_extra(system: &Bordered, x: &mut [f64]) -> Vec<f64> {
-    system.pinned().iter().map(|&p| std::mem::take(&mut x[p as usize])).collect()
-}
-
 /// The coupled matrix, its rows scaled.
 struct Operator<'a> {
     system: &'a Bordered,
@@ -167,27 +106,18 @@ impl LinearOperator for Operator<'_> {
 }
 
 impl Operator<'_> {
-    /// The unknowns and the right-hand side as [`Bordered`] has them.
-    fn unscaled(&self, x: &[f64], b: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-        let mut w = x.to_vec();
-        let extra = take_extra(self.system, &mut w);
-        self.system.unscale(&mut w);
-        // Factors are powers of two: nothing is rounded.
-        let rhs = b.iter().zip(self.levels.factors).map(|(b, f)| b / f).collect();
-        (w, extra, rhs)
+    fn equations(&self) -> Equations<'_> {
+        Equations { system: self.system, factors: self.levels.factors, scaled: true }
     }
 }
 
-impl System for Operator<'_> {
+impl Residuals for Operator<'_> {
     fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
-        let (w, extra, rhs) = self.unscaled(x, b);
-        self.system.residual_into(&rhs, &w, &extra, r);
-        r.iter_mut().zip(self.levels.factors).for_each(|(r, f)| *r *= f);
+        self.equations().residual(x, b, r);
     }
 
     fn backward_error(&self, x: &[f64], b: &[f64]) -> f64 {
-        let (w, extra, rhs) = self.unscaled(x, b);
-        self.system.backward_error(&rhs, &w, &extra)
+        self.equations().backward_error(x, b)
     }
 }
 

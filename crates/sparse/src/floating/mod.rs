@@ -4,12 +4,15 @@ mod bordered;
 mod clusters;
 mod coupled;
 mod dense;
+mod direct;
 mod eliminated;
+mod joined;
 mod neumann;
+mod prepared;
 mod split;
 
 pub use bordered::{Bordered, BorderedSolution};
 pub use clusters::{Cluster, ComponentInfo, DEFAULT_THRESHOLD, clusters};
-pub use eliminated::PreparedBordered;
 pub use neumann::{NeumannSolution, pure_neumann};
+pub use prepared::PreparedBordered;
 pub use split::{ChainLink, GroupUnknowns, Split};

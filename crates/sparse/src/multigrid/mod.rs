@@ -8,6 +8,7 @@ mod colored;
 mod cycle;
 mod evolution;
 mod galerkin;
+mod kept;
 mod pairwise;
 mod params;
 mod prolongation;
@@ -79,9 +80,10 @@ impl Multigrid {
         multigrid.info.levels.push((matrix.nrows(), matrix.nnz()));
         let mut a = matrix;
         let mut sums = galerkin::row_sums(&a);
+        let mut kept = kept::rows(&a, params.keep);
         while a.nrows() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
             let weights = weights.filter(|_| multigrid.levels.is_empty());
-            let Some((p, r)) = transfers(&a, weights, params)? else { break };
+            let Some((p, r)) = transfers(&a, weights, &mut kept, params)? else { break };
             (a, sums) = multigrid.add_level(a, &sums, p, r)?;
         }
         multigrid.coarse = Coarse::new(&a, &sums, params.coarsest)?;
@@ -131,10 +133,12 @@ impl Multigrid {
     }
 }
 
-/// Prolongation and restriction to the next level; `None` where there is none that is worth having.
+/// Prolongation and restriction to the next level; `None` where there is none that is worth having. Of a level that there is
+/// `kept` says which unknowns stay, before and after.
 fn transfers(
     a: &Csr,
     weights: Option<&[f64]>,
+    kept: &mut Vec<bool>,
     params: &MultigridParams,
 ) -> Result<Option<(Csr, Csr)>, SolveError> {
     let symmetric = strength::symmetric(a, params.threshold);
@@ -145,7 +149,9 @@ fn transfers(
     let worth = |count: usize| count > 0 && count as f64 <= LEAST_COARSENING * a.nrows() as f64;
     let p = match params.coarsening {
         Coarsening::SmoothedAggregation => {
-            let aggregates = aggregation::standard(a, &graph);
+            let graph = kept::without(graph, kept);
+            let mut aggregates = aggregation::standard(a, &graph);
+            *kept = kept::single_out(&mut aggregates, kept);
             if !worth(aggregates.count) {
                 return Ok(None);
             }

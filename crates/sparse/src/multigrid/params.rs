@@ -92,6 +92,9 @@ pub struct MultigridParams {
     pub threshold: f64,
     /// How residuals come to the coarse level.
     pub restriction: Restriction,
+    /// Rows whose other entries add up to more than this many diagonals keep an unknown of their own on every level, where they
+    /// are few; at least 1, infinity for none. Sums over such rows make coarse rows that no smoother copes with.
+    pub keep: f64,
     /// Unknowns up to which a level is solved directly, at least 1.
     pub coarsest: usize,
 }
@@ -106,6 +109,7 @@ impl Default for MultigridParams {
             strength: StrengthKind::Symmetric,
             threshold: 0.25,
             restriction: Restriction::Transpose,
+            keep: f64::INFINITY,
             coarsest: 400,
         }
     }
@@ -116,6 +120,9 @@ impl MultigridParams {
         let bad = |what, value, expected| Err(SolveError::BadParameter { what, value, expected });
         if !(0.0..1.0).contains(&self.threshold) {
             return bad("the threshold of strength", self.threshold, "it must lie in [0, 1)");
+        }
+        if self.keep.is_nan() || self.keep < 1.0 {
+            return bad("the size of rows that are kept", self.keep, "it must be at least 1");
         }
         if self.sweeps == 0 {
             return bad("the number of sweeps", 0.0, "it must be at least 1");

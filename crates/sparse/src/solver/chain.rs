@@ -1,5 +1,6 @@
 //! Multigrid, and what steps in for it.
 
+use super::direct::Factors;
 use super::krylov::{Method, iterate};
 use super::scaling::Scaled;
 use super::{AUTO_RESTART, SolveError, SolveInfo, SolverParams};
@@ -15,12 +16,14 @@ pub(crate) const PATIENCE: usize = 40;
 /// What steps in.
 const SUBSTITUTE: Method = Method::BiCgStab { l: 2 };
 
-/// GMRES with multigrid, BiCGStab(2) with ILU(0) where that stagnates.
+/// GMRES with multigrid, BiCGStab(2) with ILU(0) where that stagnates, and factors where that does, too.
 #[derive(Debug)]
 pub(crate) struct Chain {
     multigrid: Option<Multigrid>,
     /// Set once multigrid has failed.
     substitute: OnceLock<IncompleteLu>,
+    /// Set once both have failed.
+    direct: OnceLock<(Scaled, Factors)>,
 }
 
 impl Chain {
@@ -31,17 +34,22 @@ impl Chain {
         };
         let weights = scaled.weights();
         match Multigrid::new(Arc::clone(&scaled.matrix), weights.as_deref(), &levels) {
-            Ok(multigrid) => Ok(Self { multigrid: Some(multigrid), substitute: OnceLock::new() }),
+            Ok(multigrid) => Ok(Self::of(Some(multigrid), OnceLock::new())),
             // A coarsest level that cannot be factorised, or whose entries overflow.
             Err(SolveError::Singular { .. } | SolveError::Matrix(_)) => {
-                Ok(Self { multigrid: None, substitute: OnceLock::from(ilu0(&scaled.matrix)?) })
+                Ok(Self::of(None, OnceLock::from(ilu0(&scaled.matrix)?)))
             }
             Err(error) => Err(error),
         }
     }
 
+    fn of(multigrid: Option<Multigrid>, substitute: OnceLock<IncompleteLu>) -> Self {
+        Self { multigrid, substitute, direct: OnceLock::new() }
+    }
+
     /// Other values in the same pattern: the levels stay, and multigrid gets another chance.
     pub(crate) fn refresh(&mut self, matrix: &Arc<Csr>) -> Result<(), SolveError> {
+        self.direct = OnceLock::new();
         let Some(multigrid) = &mut self.multigrid else {
             self.substitute = OnceLock::from(ilu0(matrix)?);
             return Ok(());
@@ -65,6 +73,26 @@ impl Chain {
         b: &[f64],
         params: &SolverParams,
     ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+        if let Some(factors) = self.direct.get() {
+            return by_factors(factors, b);
+        }
+        match self.iterated(a, b, params) {
+            Err(error @ (SolveError::NoConvergence { .. } | SolveError::BreakDown { .. }))
+                if a.nrows() <= params.direct_max =>
+            {
+                let Ok(factors) = Factors::new(a) else { return Err(error) };
+                by_factors(self.direct.get_or_init(|| factors), b)
+            }
+            solved => solved,
+        }
+    }
+
+    fn iterated(
+        &self,
+        a: &Csr,
+        b: &[f64],
+        params: &SolverParams,
+    ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
         if let Some(lu) = self.substitute.get() {
             return iterate(SUBSTITUTE, a, lu, b, params);
         }
@@ -83,6 +111,11 @@ impl Chain {
             solved => solved,
         }
     }
+}
+
+fn by_factors((scaled, factors): &(Scaled, Factors), b: &[f64]) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+    let (x, info) = factors.solve_refined(&*scaled.matrix, &scaled.rhs(b))?;
+    Ok((scaled.unscale(x), info))
 }
 
 /// Solves for what the first method has left.

@@ -1,5 +1,6 @@
 //! Sparse factorisation. The only file that names faer.
 
+use super::krylov::Residuals;
 use super::scaling::Scaled;
 use super::{Criterion, SolveError, SolveInfo};
 use crate::csr::Csr;
@@ -50,6 +51,11 @@ impl Factors {
         {
             return Ok((scaled, factors));
         }
+        Self::lu(matrix)
+    }
+
+    /// Scales and factorises by `L U`.
+    pub(crate) fn lu(matrix: &Csr) -> Result<(Scaled, Self), SolveError> {
         let scaled = Scaled::rows(matrix)?;
         let kind = factorise_lu(&scaled.matrix)?;
         let factors = Self::checked(kind, &scaled.matrix)?;
@@ -82,6 +88,11 @@ impl Factors {
         Ok(factors)
     }
 
+    /// Estimate from below of the condition number of the scaled matrix.
+    pub(crate) fn condition(&self) -> f64 {
+        self.condition
+    }
+
     fn name(&self) -> &'static str {
         match self.kind {
             Kind::Lu(_) => "sparse LU",
@@ -100,7 +111,11 @@ impl Factors {
     }
 
     /// Solves and refines until the componentwise backward error stagnates.
-    pub(crate) fn solve_refined(&self, matrix: &Csr, b: &[f64]) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+    pub(crate) fn solve_refined(
+        &self,
+        matrix: &dyn Residuals,
+        b: &[f64],
+    ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
         let mut x = b.to_vec();
         self.apply(&mut x);
         let mut backward_error = matrix.backward_error(&x, b);

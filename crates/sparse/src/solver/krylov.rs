@@ -25,11 +25,11 @@ const AIM_FURTHER: f64 = 1e-3;
 
 /// Componentwise backward error at which rounding alone keeps the residual from shrinking: what sums of a few tens of terms
 /// leave, with room. No other solution would fit the equations better.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+pub(crate) const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// How far above the tolerance a residual may stay when rounding is all that is left of it. Beyond, a solution that is large for
 /// want of a better one, of a system that has none, would pass as well.
-const NEAR: f64 = 1e3;
+pub(crate) const NEAR: f64 = 1e3;
 
 /// Something that maps vectors to vectors, `y = A x`.
 pub trait LinearOperator: Sync {
@@ -48,15 +48,20 @@ impl LinearOperator for Csr {
     }
 }
 
-/// A system that an iterative method solves: products, and the true residual, which may be formed more accurately.
-pub(crate) trait System: LinearOperator {
+/// What tells how well a system is solved; it may be formed more accurately than from a matrix.
+pub(crate) trait Residuals {
     /// `r = b - A x`
     fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]);
     /// Componentwise backward error of `x`, see [`Csr::backward_error`].
     fn backward_error(&self, x: &[f64], b: &[f64]) -> f64;
 }
 
-impl System for Csr {
+/// A system that an iterative method solves.
+pub(crate) trait System: LinearOperator + Residuals {}
+
+impl<T: LinearOperator + Residuals> System for T {}
+
+impl Residuals for Csr {
     fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
         Self::residual(self, x, b, r);
     }

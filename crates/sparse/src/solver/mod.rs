@@ -14,7 +14,7 @@ pub(crate) use chain::PATIENCE;
 pub(crate) use direct::Factors;
 pub use error::SolveError;
 pub use krylov::LinearOperator;
-pub(crate) use krylov::{Method, System, iterate};
+pub(crate) use krylov::{Method, NEAR, ROUND_OFF, Residuals, iterate};
 pub(crate) use prepared::Levels;
 pub use prepared::{Prepared, solve};
 pub(crate) use scaling::{Scaled, reciprocal_power};
@@ -74,6 +74,8 @@ pub struct SolverParams {
     pub backward_error: Option<f64>,
     /// Largest number of products with the matrix.
     pub max_iterations: usize,
+    /// Unknowns up to which [`SolverKind::Auto`] and [`SolverKind::Multigrid`] factorise in the end what nothing else solves.
+    pub direct_max: usize,
 }
 
 impl Default for SolverParams {
@@ -84,6 +86,7 @@ impl Default for SolverParams {
             tolerance: DEFAULT_TOLERANCE,
             backward_error: None,
             max_iterations: 2000,
+            direct_max: AUTO_DIRECT_MAX,
         }
     }
 }

@@ -106,7 +106,7 @@ impl Prepared {
         let b = self.scaled.rhs(rhs);
         let matrix = &self.scaled.matrix;
         let solved = match &self.engine {
-            Engine::Direct(factors) => factors.solve_refined(matrix, &b),
+            Engine::Direct(factors) => factors.solve_refined(&**matrix, &b),
             Engine::Krylov(method, m) => iterate(*method, &**matrix, m.as_ref(), &b, &self.params),
             Engine::Multigrid(chain) => chain.solve(matrix, &b, &self.params),
         };

@@ -4,7 +4,7 @@ pub(crate) mod systems;
 
 use std::time::Instant;
 
-use meshless::sparse::{MultigridParams, PreconditionerKind, Prepared, SolveError, SolverKind, SolverParams};
+use meshless::sparse::{AUTO_RESTART, BorderedSolution, PreparedBordered, SolveError, SolverParams};
 
 use super::Outcome;
 use super::table::Table;
@@ -20,12 +20,6 @@ const GHOSTS_MAX: usize = 100_000;
 /// The residual at which the targets count.
 const TOLERANCE: f64 = 1e-10;
 
-/// Vectors that GMRES keeps.
-const RESTART: usize = 60;
-
-/// Products after which a row of the table says that there are too many.
-const PATIENCE: usize = 120;
-
 /// Minutes of work: every row is reported as soon as it is there.
 pub(super) fn run() -> Outcome {
     let head = [
@@ -33,6 +27,7 @@ pub(super) fn run() -> Outcome {
         "unknowns",
         "contrast",
         "entries/row",
+        "responses",
         "iterations",
         "residual",
         "complexity",
@@ -62,38 +57,37 @@ fn figures(
     unknowns: usize,
     contrast: f64,
 ) -> Result<Vec<String>, Box<dyn std::error::Error + Send + Sync>> {
-    let system = system(kind, unknowns, contrast)?;
-    let params = SolverParams {
-        kind: SolverKind::Gmres { restart: RESTART },
-        preconditioner: PreconditionerKind::Multigrid(MultigridParams::default()),
-        tolerance: TOLERANCE,
-        max_iterations: PATIENCE,
-        ..SolverParams::default()
-    };
-    let n = system.matrix.nrows() as f64;
+    let (system, params) = system(kind, unknowns, contrast)?;
+    let (system, params) = (system.bordered, SolverParams { tolerance: TOLERANCE, ..params });
+    let n = system.n() as f64;
     let start = Instant::now();
-    let prepared = Prepared::new(&system.matrix, &params)?;
+    let prepared = PreparedBordered::new(system.clone(), &params)?;
     let setup = start.elapsed().as_secs_f64();
+    let responses = prepared.products();
     let start = Instant::now();
-    let solved = prepared.solve(&system.rhs);
+    let solved = prepared.solve(system.rhs());
     let solve = start.elapsed().as_secs_f64();
-    let (iterations, residual) = match solved {
-        Ok((_, info)) => (info.iterations, info.residual),
+    let (iterations, residual, by_multigrid) = match &solved {
+        Ok(BorderedSolution { info, .. }) => {
+            (info.iterations, info.residual, info.name.ends_with("multigrid"))
+        }
         Err(
             SolveError::NoConvergence { iterations, residual, .. }
             | SolveError::BreakDown { iterations, residual, .. },
-        ) => (iterations, residual),
-        Err(error) => return Err(error.into()),
+        ) => (*iterations, *residual, false),
+        Err(error) => return Err(error.clone().into()),
     };
-    let (complexity, bytes) =
+    let (complexity, levels) =
         prepared.hierarchy().map_or((f64::NAN, 0), |h| (h.operator_complexity(), h.bytes));
     // The scaled matrix, the levels, and the vectors of GMRES.
-    let bytes = system.matrix.bytes() + bytes + 8 * (iterations.min(RESTART) + 6) * system.matrix.nrows();
+    let matrix = system.matrix().off_diagonal().bytes() + 12 * system.n();
+    let bytes = matrix + levels + 8 * (iterations.min(AUTO_RESTART) + 6) * system.n();
     Ok(vec![
         format!("{n}"),
         format!("{contrast:.0e}"),
-        format!("{:.1}", system.matrix.nnz() as f64 / n),
-        if residual > TOLERANCE { format!("> {iterations}") } else { format!("{iterations}") },
+        format!("{:.1}", 1.0 + system.matrix().nnz() as f64 / n),
+        format!("{responses}"),
+        if by_multigrid { format!("{iterations}") } else { format!("> {iterations}") },
         format!("{residual:.0e}"),
         format!("{complexity:.2}"),
         format!("{setup:.2}"),

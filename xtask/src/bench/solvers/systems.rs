@@ -4,7 +4,10 @@
 use meshless::interfaces::LinearSystem;
 use meshless::plan::Plan;
 use meshless::scene::Scene;
-use meshless::sparse::{ChainLink, DifferenceMatrix, GroupUnknowns, Split};
+use meshless::sparse::{
+    ChainLink, DifferenceMatrix, GroupUnknowns, MultigridParams, PreconditionerKind, SolverKind,
+    SolverParams, Split,
+};
 
 type Error = Box<dyn std::error::Error + Send + Sync>;
 
@@ -58,17 +61,26 @@ impl Kind {
     }
 }
 
-/// The system with about `unknowns` unknowns and the diffusivity `contrast` in the ball, 1 outside.
-pub(crate) fn system(kind: Kind, unknowns: usize, contrast: f64) -> Result<LinearSystem, Error> {
+/// The system with about `unknowns` unknowns and the diffusivity `contrast` in the ball, 1 outside, and how a plan solves it
+/// with multigrid.
+pub(crate) fn system(
+    kind: Kind,
+    unknowns: usize,
+    contrast: f64,
+) -> Result<(LinearSystem, SolverParams), Error> {
     let d = kind.dimension();
     let m = (unknowns as f64).powf(1.0 / d as f64);
     if kind == Kind::SevenPoint {
-        return seven_point(m.round() as usize, contrast);
+        let kind = SolverKind::Multigrid;
+        let preconditioner = PreconditionerKind::Multigrid(MultigridParams::default());
+        let params = SolverParams { kind, preconditioner, ..SolverParams::default() };
+        return Ok((seven_point(m.round() as usize, contrast)?, params));
     }
-    let text = scene(d, 1.0 / m, contrast, kind.method());
+    let method = format!("{}\nsolver = \"multigrid\"", kind.method());
+    let text = scene(d, 1.0 / m, contrast, &method);
     let scene = Scene::parse(&text, "solvers")?;
     let plan = Plan::new(&scene)?;
-    Ok(meshless::linear_system(&scene, &plan)?)
+    Ok((meshless::linear_system(&scene, &plan)?, plan.solver))
 }
 
 /// A ball in a box, held at its faces.
@@ -122,5 +134,5 @@ fn seven_point(m: usize, contrast: f64) -> Result<LinearSystem, Error> {
         Split::trivial(n)
     };
     let bordered = split.apply(&rows, &rhs)?;
-    Ok(LinearSystem { matrix: bordered.pinned_matrix(), rhs: bordered.pinned_rhs(), extra: bordered.extra() })
+    Ok(LinearSystem { bordered })
 }
