@@ -179,6 +179,7 @@ const FEATURES: &[&str] = &[
     "correction = ",
     "conservative_neumann = ",
     "selection_tolerance = ",
+    "select_by_region = ",
     "at = [",
     "vtu = true",
     "plot = true",

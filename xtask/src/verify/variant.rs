@@ -8,6 +8,7 @@ pub(crate) struct Variant {
     pub(crate) log_scaling: Option<bool>,
     pub(crate) conservative_neumann: Option<bool>,
     pub(crate) selection_tolerance: Option<f64>,
+    pub(crate) select_by_region: Option<bool>,
     pub(crate) solver: Option<&'static str>,
     /// Radius of interaction in units of the spacing.
     pub(crate) support: Option<f64>,
@@ -34,6 +35,7 @@ impl Variant {
             log_scaling: None,
             conservative_neumann: None,
             selection_tolerance: None,
+            select_by_region: None,
             solver: None,
             support: Some(meshless_tests::kraus::SUPPORT),
             wedge: None,
@@ -77,6 +79,7 @@ impl Variant {
         push("log_scaling", self.log_scaling.map(|b| b.to_string()));
         push("conservative_neumann", self.conservative_neumann.map(|b| b.to_string()));
         push("selection_tolerance", self.selection_tolerance.map(|t| format!("{t:?}")));
+        push("select_by_region", self.select_by_region.map(|b| b.to_string()));
         push("solver", self.solver.map(|s| format!("\"{s}\"")));
         push("support", self.support.map(|s| format!("{s:?}")));
         push("wedge", self.wedge.map(|w| format!("\"{w}\"")));
@@ -100,6 +103,7 @@ impl Variant {
                 .map(|b| format!("neumann={}", if b { "conservative" } else { "strong" })),
         );
         push(self.selection_tolerance.map(|t| format!("tolerance={t:e}")));
+        push(self.select_by_region.map(|b| format!("by_region={b}")));
         push(self.solver.map(|s| format!("solver={s}")));
         push(self.wedge.map(|w| format!("wedge={w}")));
         push(self.flux_weights.map(|b| format!("flux_weights={b}")));
@@ -119,6 +123,9 @@ impl Variant {
             "particle-difference-extended" => "former particle difference".to_owned(),
             other => other.to_owned(),
         };
+        if self.select_by_region == Some(true) {
+            label += ", by region";
+        }
         if let Some(p) = self.order {
             label += &format!(", order {p}");
         }
@@ -158,6 +165,7 @@ mod tests {
         let problem = meshless_tests::kraus::interior(1e4, 0.2, 1);
         let every = Variant {
             selection_tolerance: Some(1e-8),
+            select_by_region: Some(true),
             conservative_neumann: Some(true),
             solver: Some("bicgstab"),
             ..Variant::plain("gfdm-hybrid")

@@ -116,13 +116,14 @@ const REACTION: &[MethodName] = &[MethodName::SurfaceReaction];
 const KERNEL: &[MethodName] = &[MethodName::SurfaceReaction, MethodName::FreeSpace];
 
 /// Options and the methods that have them.
-const OPTIONS: [(&str, &[MethodName]); 16] = [
+const OPTIONS: [(&str, &[MethodName]); 17] = [
     ("smoothing", STRONG),
     ("log_scaling", STRONG),
     ("correction", STRONG),
     ("conservative_neumann", NAMED),
     ("support", EVERY),
     ("selection_tolerance", SELECTING),
+    ("select_by_region", SELECTING),
     ("weight", WEDGED),
     ("wedge", WEDGED),
     ("flux_weights", PARTICLE),
@@ -198,6 +199,7 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         conservative_neumann: flag("conservative_neumann")?,
         support: table.get("support").map(|value| support(&value)).transpose()?,
         selection_tolerance: table.get("selection_tolerance").map(|value| tolerance(&value)).transpose()?,
+        select_by_region: flag("select_by_region")?,
         weight: table.get("weight").map(|value| value.one_of(&WEIGHTS)).transpose()?,
         flux_weights: flag("flux_weights")?,
         visibility: flag("visibility")?,

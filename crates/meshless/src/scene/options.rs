@@ -89,6 +89,8 @@ pub struct MethodOptions {
     pub support: Option<f64>,
     /// Diagonal-dominance error above which a node gets a conservative row, not negative.
     pub selection_tolerance: Option<f64>,
+    /// Nodes whose support reaches into another region get a conservative row as well.
+    pub select_by_region: Option<bool>,
     /// Weight of neighbours by their distance.
     pub weight: Option<WeightName>,
     /// The other side of an interface.

@@ -2,7 +2,7 @@
 
 use meshless_tests::kraus;
 
-use super::{AUTO, CONSERVATIVE, HYBRID, POSITIVE, Variant};
+use super::{BY_REGION, CONSERVATIVE, HYBRID, POSITIVE, Variant};
 use crate::verify::options::Effort;
 
 /// A problem with its parameter, the jump of the coefficient.
@@ -92,7 +92,7 @@ impl Case {
         for log in [false, true] {
             variants.extend((0..=2).map(|cycles| Variant::strong(cycles, log)));
         }
-        variants.extend([POSITIVE, HYBRID, CONSERVATIVE, AUTO]);
+        variants.extend([POSITIVE, HYBRID, CONSERVATIVE, BY_REGION]);
         if self.strips {
             variants.push(HYBRID.with_strong_neumann());
         }

@@ -32,8 +32,9 @@ const POSITIVE: Variant = Variant::plain("gfdm-positive").directly();
 const HYBRID: Variant = Variant::plain("gfdm-hybrid").directly();
 /// Conservative rows everywhere.
 const CONSERVATIVE: Variant = Variant::plain("gfdm-conservative").directly();
-/// What the plan chooses where a scene names no method: as the conservative hybrid, but regions tell where interfaces are.
-const AUTO: Variant = Variant::plain("auto").directly();
+/// The same, and regions tell where interfaces are: what a plan falls back on.
+const BY_REGION: Variant =
+    Variant { select_by_region: Some(true), ..Variant::plain("gfdm-hybrid") }.directly();
 /// The strong form that the paper compares with.
 const STRONG: Variant = Variant::strong(2, true);
 

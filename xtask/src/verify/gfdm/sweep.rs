@@ -1,7 +1,7 @@
 //! Which methods are run at which jumps on which clouds.
 
 use super::cases::{CASES, Case};
-use super::{AUTO, CONSERVATIVE, HYBRID, POSITIVE, Variant, radius};
+use super::{BY_REGION, CONSERVATIVE, HYBRID, POSITIVE, Variant, radius};
 use crate::verify::jobs::Job;
 use crate::verify::options::Effort;
 use crate::verify::runner::{Extra, Runner};
@@ -58,8 +58,8 @@ fn rungs(effort: Effort, case: &Case, variant: &Variant, jump: f64) -> usize {
     let rungs = match *variant {
         HYBRID if power.abs() >= 2 || !quick => to_claims,
         HYBRID => CLAIMED,
-        AUTO if power == 1 => to_claims,
-        AUTO => 0,
+        BY_REGION if power == 1 => to_claims,
+        BY_REGION => 0,
         v if v == HYBRID.with_strong_neumann() && shown => to_claims,
         v if v == HYBRID.with_strong_neumann() && quick => 0,
         CONSERVATIVE if quick && power.abs() < 4 => 0,

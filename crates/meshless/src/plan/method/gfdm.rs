@@ -29,9 +29,10 @@ pub(super) fn params(name: MethodName, scene: &Scene, survey: &Survey) -> GfdmPa
     gfdm.strong.degree = scene.method.order.unwrap_or(gfdm.strong.degree);
     gfdm.conservative_neumann = options.conservative_neumann.unwrap_or(gfdm.conservative_neumann);
     gfdm.selection_tolerance = options.selection_tolerance.unwrap_or(gfdm.selection_tolerance);
-    // A scene that names the method gets the paper's selection; where the choice is ours, regions tell where
-    // interfaces are, also where a jump is too small to spoil the diagonal dominance.
-    gfdm.select_by_region = scene.method.name == MethodName::Auto && survey.has_interface();
+    // A scene that names the method gets the paper's selection unless it says otherwise; where the choice is ours, regions
+    // tell where interfaces are, also where a jump is too small to spoil the diagonal dominance.
+    let by_region = options.select_by_region.unwrap_or(scene.method.name == MethodName::Auto);
+    gfdm.select_by_region = by_region && survey.has_interface();
     gfdm
 }
 
