@@ -59,12 +59,44 @@ fn composite_rate(a: f64, eta: [f64; 2]) -> f64 {
             .sum()
     };
     let pole = |i: usize| eta[i] * (std::f64::consts::PI / lengths[i]).powi(2);
-    let (mut low, mut high) = (0.0, pole(0).min(pole(1)));
+    root(excess, pole(0).min(pole(1)))
+}
+
+/// The root between 0 and a pole of a function that falls, by bisection.
+fn root(excess: impl Fn(f64) -> f64, pole: f64) -> f64 {
+    let (mut low, mut high) = (0.0, pole);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 { low = middle } else { high = middle }
     }
     0.5 * (low + high)
+}
+
+/// A stiff core between two layers whose ends are kept at 0, at x = 0.3 and 0.7: the slowest mode. Nothing but the layers holds
+/// the core, so that it floats where it is stiff enough.
+///
+/// With `k_i = sqrt(rate/eta_i)`, u is `sin(k_2 x)` on the left and `B cos(k_1 (x - 1/2))` in the core, times `exp(-rate t)`.
+pub fn sandwich(dimension: usize, spacing: f64, contrast: f64, tolerance: f64) -> String {
+    let (a, b) = (0.3, 0.2);
+    let excess = |rate: f64| {
+        let (core, layer) = ((rate / contrast).sqrt(), rate.sqrt());
+        layer / (layer * a).tan() - contrast * core * (core * b).tan()
+    };
+    let poles = [(std::f64::consts::PI / a).powi(2), contrast * (std::f64::consts::FRAC_PI_2 / b).powi(2)];
+    let rate = root(excess, poles[0].min(poles[1]));
+    let (core, layer) = ((rate / contrast).sqrt(), rate.sqrt());
+    let top = (layer * a).sin() / (core * b).cos();
+    let (side, middle) = (format!("sin({layer}*min(x, 1 - x))"), format!("{top}*cos({core}*(x - 0.5))"));
+    format!(
+        "title = \"Sandwich\"\ndimension = {dimension}\n{}[points]\nspacing = {spacing}\nseed = 1\n\n\
+         [[regions]]\nname = \"core\"\nlevel_set = \"abs(x - 0.5) - {b}\"\ndiffusivity = {contrast:e}\n\
+         exact = \"exp(-{rate}*t)*{middle}\"\n\n\
+         [[regions]]\nname = \"layers\"\ndiffusivity = 1\nexact = \"exp(-{rate}*t)*{side}\"\n\n{}\
+         [time]\nend = {}\ntolerance = {tolerance}\ninitial = \"if(abs(x - 0.5) < {b}, {middle}, {side})\"\n\n",
+        unit_box(dimension),
+        ends_at_zero(dimension),
+        1.0 / rate,
+    )
 }
 
 /// `u = cos(3 t) (x^2 + 2 x + y)`: exact in space for stencils of degree 2. Source, boundary values, Robin data and the

@@ -67,7 +67,7 @@ fn every_method_of_a_bounded_domain_steps_through_time() {
 }
 
 /// The order that each method has where something jumps, in steady scenes, less a half for clouds that differ in more than
-/// their spacing; for smeared interfaces less a quarter of their first order.
+/// their spacing; less a quarter of first order.
 #[test]
 fn the_order_at_a_contact_is_that_of_steady_scenes() {
     for (name, least) in
@@ -106,6 +106,7 @@ fn every_method_steps() {
         MethodName::GfdmHybrid,
         MethodName::GfdmPositive,
         MethodName::ParticleDifference,
+        MethodName::Sharp,
     ] {
         let error = l2(&solve_with(&slab(2, 0.05, 1e-4), method).expect("it can be solved"));
         assert!(error < 1e-2, "{method:?}: {error:e}");

@@ -77,6 +77,6 @@ pub use sample::{Sample, SampleScratch, Sampler};
 pub use slit::{SlitCondition, SlitInterface};
 pub use surface_field::SurfaceField;
 pub use system::{
-    LinearSystem, PreparedSystem, PseudoTimeParams, PseudoTimeSolution, SplitValues, SystemParams,
-    SystemSolution, linear_system, pseudo_time, solve,
+    LinearSystem, Mass, MassRows, PreparedSystem, PseudoTimeParams, PseudoTimeSolution, SplitValues,
+    SystemParams, SystemSolution, linear_system, pseudo_time, residual, solve,
 };

@@ -49,6 +49,9 @@ pub struct Discretization {
     /// Where a method splits off the constants of stiff regions itself: what its rows act on. `None` for rows in
     /// nodal values, whose constants the shared layer splits off.
     pub constants: Option<SplitRows>,
+    /// The rows of M in `M du/dt + A u = b`, over the values of the nodes. `None` for the volume of every row on the diagonal,
+    /// and zero for prescribed values and collocated boundary conditions.
+    pub mass: Option<DifferenceMatrix>,
     /// How every row was made.
     pub kinds: Vec<RowKind>,
     /// Measure that belongs to every node: the volume of its cell where there is one, else `spacing^D`.

@@ -70,8 +70,8 @@ pub const METHODS: &[MethodInfo] = &[
         order: "2-16 / 2-16",
         dimensions: "1, 2, 3",
         limits: "one polynomial for each region of a stencil, the equation and the interface conditions built in: the \
-                 order of the polynomials (`order`, even) at any contrast; no maximum principle, not conservative, \
-                 steady scenes only",
+                 order of the polynomials (`order`, even) at any contrast, in time as well; no maximum principle, not \
+                 conservative",
     },
     MethodInfo {
         name: "surface-reaction",

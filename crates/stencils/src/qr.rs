@@ -71,6 +71,11 @@ impl Qr {
         }
     }
 
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
     /// Number of columns.
     pub fn columns(&self) -> usize {
         self.columns

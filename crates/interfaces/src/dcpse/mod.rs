@@ -61,6 +61,7 @@ impl<const D: usize> Method<D> for ImmersedInterface {
                 rows,
                 rhs,
                 constants: None,
+                mass: None,
                 kinds,
                 volumes,
                 counts,

@@ -147,6 +147,7 @@ impl Parts {
             rows,
             rhs,
             constants: None,
+            mass: None,
             kinds,
             volumes,
             counts,

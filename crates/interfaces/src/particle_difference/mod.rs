@@ -160,6 +160,7 @@ fn assemble<const D: usize>(
         rows: matrix,
         rhs,
         constants: None,
+        mass: None,
         kinds,
         volumes,
         counts,

@@ -4,17 +4,18 @@ use meshless_stencils::Qr;
 
 use super::basis::Jet;
 use super::maker::Maker;
-use super::parts::{Parts, Row};
+use super::parts::Parts;
+pub(super) use super::parts::Row;
 use super::stencil::Stencil;
 
 /// `exp(-DECAY (r/R)^2)` is the weight of the value at a node.
-const DECAY: f64 = 3.5;
+pub(super) const DECAY: f64 = 3.5;
 
 /// Weight of the rows of boundary conditions on the flux.
 const BOUNDARY_WEIGHT: f64 = 10.0;
 
 /// Pivots below this part of the largest count as none (Golub & Van Loan, section 5.4).
-const RANK_TOLERANCE: f64 = 1e-12;
+pub(super) const RANK_TOLERANCE: f64 = 1e-12;
 
 /// What a row of the fit has on its right-hand side beside the value of a node: a number, what it would be for the
 /// source 1, and the constants of parts.
@@ -25,17 +26,32 @@ struct Given {
     constants: [(usize, f64); 2],
 }
 
+/// What a row does to the polynomial of a part at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term<const D: usize> {
+    pub(super) row: usize,
+    pub(super) part: usize,
+    pub(super) z: [f64; D],
+    pub(super) functional: Row<D>,
+    /// What a source of 1 has on the right-hand side of a row that is the equation; 0 for all others.
+    pub(super) equation: f64,
+}
+
 /// Memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct Fit<const D: usize> {
     qr: Qr,
-    parts: Parts<D>,
+    pub(super) parts: Parts<D>,
+    /// The rows by parts, where the mass of a row is wanted.
+    pub(super) terms: Vec<Term<D>>,
+    in_time: bool,
     given: Vec<Given>,
     /// Weights of the values, one a node.
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     wanted: Vec<f64>,
     z: Vec<f64>,
-    factors: Vec<f64>,
+    /// Factors of the rows in the functional that was asked for last.
+    pub(super) factors: Vec<f64>,
 }
 
 /// A functional of the own polynomial in terms of values and data.
@@ -54,6 +70,7 @@ pub(super) struct Combination {
 impl<const D: usize> Fit<D> {
     /// Fills and factors the matrix of a stencil.
     pub(super) fn factor(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
+        self.in_time = maker.rates.is_some();
         self.parts.prepare(maker, stencil);
         self.assemble(maker, stencil);
         if stencil.parts.len() == 1 {
@@ -152,12 +169,24 @@ impl<const D: usize> Fit<D> {
         }
         self.given.clear();
         self.weights.clear();
+        self.terms.clear();
         self.node_rows(maker, stencil);
         self.interface_rows(maker, stencil);
     }
 
-    /// Adds the functional of a part's polynomial to a row; its right-hand side is what the particular part leaves.
-    fn put(&mut self, row: usize, part: usize, jet: &Jet<D>, functional: &Row<D>, given: &mut Given) {
+    /// Adds the functional of a part's polynomial at z to a row; its right-hand side is what the particular part leaves.
+    fn put(
+        &mut self,
+        row: usize,
+        part: usize,
+        (z, jet): (&[f64; D], &Jet<D>),
+        functional: &Row<D>,
+        given: &mut Given,
+    ) {
+        if self.in_time {
+            let equation = given.unit_source;
+            self.terms.push(Term { row, part, z: *z, functional: *functional, equation });
+        }
         let first = self.parts.first_column(part);
         if functional.is_value() {
             for (m, value) in jet.values.iter().enumerate() {
@@ -167,6 +196,9 @@ impl<const D: usize> Fit<D> {
             for m in 0..jet.values.len() {
                 self.qr.column_mut(first + m)[row] = functional.apply(jet, m);
             }
+        }
+        if let Some((column, entry)) = self.parts.open_source(part, functional, jet) {
+            self.qr.column_mut(first + column)[row] = entry;
         }
         let [known, unit] = self.parts.apply_to_particular(part, functional);
         given.known -= known;
@@ -189,12 +221,12 @@ impl<const D: usize> Fit<D> {
             let weight = (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
             self.weights.push(weight);
             let mut given = Given::default();
-            self.put(row, part, &jet, &Row::of_value(weight), &mut given);
+            self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
             let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
-                self.equation(maker, part, &jet, &maker.slope(j), radius, eta * scale, source);
+                self.equation(maker, part, (&z, &jet), &maker.slope(j), radius, eta * scale, source);
             }
             for condition in &maker.boundary_rows[j] {
                 let functional = Row {
@@ -205,7 +237,7 @@ impl<const D: usize> Fit<D> {
                 let factor = BOUNDARY_WEIGHT * radius / (eta * scale);
                 let constants = [(part, -factor * condition.exchange), (part, 0.0)];
                 let mut given = Given { known: factor * condition.flux, unit_source: 0.0, constants };
-                self.put(self.given.len(), part, &jet, &functional, &mut given);
+                self.put(self.given.len(), part, (&z, &jet), &functional, &mut given);
                 self.given.push(given);
             }
         }
@@ -217,7 +249,7 @@ impl<const D: usize> Fit<D> {
         &mut self,
         maker: &Maker<'_, D>,
         part: usize,
-        jet: &Jet<D>,
+        at: (&[f64; D], &Jet<D>),
         slope: &[f64; D],
         radius: f64,
         conductance: f64,
@@ -228,7 +260,7 @@ impl<const D: usize> Fit<D> {
             Row { value: 0.0, gradient: slope.map(|s| strength * radius * s), laplacian: strength };
         let unit = -strength * radius * radius / conductance;
         let mut given = Given { known: unit * source, unit_source: unit, ..Given::default() };
-        self.put(self.given.len(), part, jet, &functional, &mut given);
+        self.put(self.given.len(), part, at, &functional, &mut given);
         self.given.push(given);
     }
 
@@ -252,13 +284,15 @@ impl<const D: usize> Fit<D> {
             self.given.resize(first + 2, Given::default());
             for (s, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 self.parts.evaluate(maker, places[s], &z, true, &mut jet);
-                self.put(first, places[s], &jet, &Row::of_value(sign * weight * scales[s]), &mut value);
+                let row = Row::of_value(sign * weight * scales[s]);
+                self.put(first, places[s], (&z, &jet), &row, &mut value);
                 let strength = sign * weight * conductance[s] / largest;
                 let slope = Row { gradient: point.normal.map(|n| strength * n), ..Row::of_value(0.0) };
-                self.put(first + 1, places[s], &jet, &slope, &mut flux);
+                self.put(first + 1, places[s], (&z, &jet), &slope, &mut flux);
                 if self.parts.has_rows(places[s]) {
                     let side = &point.sides[s];
-                    self.equation(maker, places[s], &jet, &side.slope, radius, conductance[s], side.source);
+                    let at = (&z, &jet);
+                    self.equation(maker, places[s], at, &side.slope, radius, conductance[s], side.source);
                 }
             }
             (self.given[first], self.given[first + 1]) = (value, flux);

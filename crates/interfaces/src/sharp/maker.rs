@@ -9,6 +9,7 @@ use super::fit::{Combination, Fit};
 use super::interface::InterfacePoints;
 use super::params::{Form, SharpParams};
 use super::particular::Particular;
+use super::rate::{RateFit, Rates};
 use super::stencil::Stencil;
 use super::thickness;
 use super::unknowns::Unknowns;
@@ -44,6 +45,8 @@ pub(super) struct Maker<'a, const D: usize> {
     pub(super) adapted: Option<Adapted<D>>,
     pub(super) complete_basis: Basis<D>,
     pub(super) harmonic_basis: Basis<D>,
+    /// Polynomials for `du/dt`; none in steady scenes.
+    pub(super) rates: Option<Rates<D>>,
     pub(super) unknowns: &'a Unknowns,
     pub(super) interfaces: &'a InterfacePoints<D>,
     pub(super) boundary_rows: Vec<Vec<BoundaryRow<D>>>,
@@ -59,6 +62,9 @@ pub(super) struct Scratch<const D: usize> {
     pub(super) stencil: Stencil<D>,
     pub(super) fit: Fit<D>,
     pub(super) combination: Combination,
+    pub(super) rates: RateFit<D>,
+    /// Factors of the rates at the nodes of the stencil.
+    pub(super) mass: Vec<f64>,
 }
 
 /// The row of a node: `w_i = sum_j h_j w_j + sum_K H_K C_K + known`, divided by what the own value leaves.
@@ -72,6 +78,8 @@ pub(super) struct Row {
     /// Coefficients of constants: cluster, value.
     pub(super) constants: Vec<(u32, f64)>,
     pub(super) rhs: f64,
+    /// Entries of the mass, that of the node itself first; empty in steady scenes.
+    pub(super) mass: Vec<f64>,
     pub(super) crosses: bool,
     pub(super) enlarged: bool,
 }
@@ -99,6 +107,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             adapted: adapted.then(|| Adapted::new(&harmonic_basis, params.source_degree())),
             complete_basis: Basis::complete(params.degree()),
             harmonic_basis,
+            rates: params.unsteady.then(|| Rates::new(params.order)),
             unknowns,
             interfaces,
             boundary_rows: boundary_rows(problem)?,
@@ -117,15 +126,28 @@ impl<'a, const D: usize> Maker<'a, D> {
     /// the combination of the value in `scratch`; returns whether the stencil was enlarged.
     pub(super) fn factor(&self, i: usize, scratch: &mut Scratch<D>) -> Result<bool, MethodError> {
         let center = &self.problem.cloud.points()[i];
-        let outcome = self.factor_at(center, self.unknowns.part[i], scratch, |combination| {
-            1.0 - combination.values[0] > LEAST_COMPLEMENT
-        });
+        let part = self.unknowns.part[i];
+        let determined = |combination: &Combination| 1.0 - combination.values[0] > LEAST_COMPLEMENT;
+        // In time a row that answers to a source by the wrong sign would make its node grow by itself.
+        let right = |combination: &Combination| determined(combination) && combination.unit_source > 0.0;
+        let outcome = match &self.rates {
+            Some(_) => self
+                .factor_at(center, part, scratch, right)
+                .or_else(|| self.factor_at(center, part, scratch, determined)),
+            None => self.factor_at(center, part, scratch, determined),
+        };
         outcome.ok_or_else(|| MethodError::Unresolved {
             node: i,
             position: center.to_vec(),
             nodes: scratch.stencil.nodes.len(),
             spacing: thickness::resolving_spacing(self.problem, i),
         })
+    }
+
+    /// What a source of 1 adds to the value of node i, about.
+    fn typical(&self, i: usize) -> f64 {
+        let level = self.problem.eta[i] * self.unknowns.scale[self.unknowns.part[i] as usize];
+        self.problem.cloud.spacing()[i].powi(2) / (4.0 * D as f64 * level)
     }
 
     /// The same round any point of a part; `None` where no stencil determines the value or is accepted.
@@ -136,7 +158,7 @@ impl<'a, const D: usize> Maker<'a, D> {
         scratch: &mut Scratch<D>,
         accept: impl Fn(&Combination) -> bool,
     ) -> Option<bool> {
-        let Scratch { stencil, fit, combination } = scratch;
+        let Scratch { stencil, fit, combination, .. } = scratch;
         let mut count = self.params.stencil_nodes(D);
         for attempt in 0..=ENLARGEMENTS {
             stencil.gather(center, own, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
@@ -166,14 +188,20 @@ impl<'a, const D: usize> Maker<'a, D> {
     /// The row of node i.
     pub(super) fn row(&self, i: usize, scratch: &mut Scratch<D>) -> Result<Row, MethodError> {
         let enlarged = self.factor(i, scratch)?;
-        let Scratch { stencil, combination, .. } = scratch;
+        let Scratch { stencil, fit, combination, rates, mass } = scratch;
+        mass.clear();
+        if let Some(polynomials) = &self.rates {
+            polynomials.of_value(self, stencil, fit, rates, mass);
+            if combination.unit_source <= 0.0 {
+                // No stencil has it right: an equation without du/dt.
+                mass.fill(0.0);
+            }
+        }
         let part = stencil.parts[0];
         // A row reads as the equation does: a source of 1 would stand on its right-hand side as the volume.
         let volume = self.problem.cloud.spacing()[i].powi(D as i32);
         let unit = combination.unit_source.abs();
-        let level = self.problem.eta[i] * self.unknowns.scale[part as usize];
-        let typical = self.problem.cloud.spacing()[i].powi(2) / (4.0 * D as f64 * level);
-        let factor = volume / unit.max(typical);
+        let factor = volume / unit.max(self.typical(i));
         let neighbors = stencil.nodes[1..].to_vec();
         let coefficients: Vec<f64> = combination.values[1..].iter().map(|h| -factor * h).collect();
         let uniform =
@@ -202,6 +230,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             row_sum,
             constants,
             rhs,
+            mass: mass.iter().map(|m| factor * m).collect(),
             crosses: stencil.parts.len() > 1,
             enlarged,
         })

@@ -14,6 +14,7 @@ mod maker;
 mod params;
 mod particular;
 mod parts;
+mod rate;
 mod sample;
 mod stencil;
 mod thickness;
@@ -103,7 +104,7 @@ impl<const D: usize> Method<D> for Sharp {
         problem: &Problem<'_, D>,
         solution: &SystemSolution,
     ) -> Result<Vec<[f64; D]>, MethodError> {
-        let values = Values::new(&solution.u, solution.split.as_ref());
+        let values = Values::new(solution);
         self.with_maker(problem, |maker| {
             at_all_nodes(solution.u.len(), |i, scratch| maker.gradient(i, &values, scratch))
         })
@@ -115,7 +116,7 @@ impl<const D: usize> Method<D> for Sharp {
         solution: &SystemSolution,
         points: &[[f64; D]],
     ) -> Result<Option<Vec<Option<Sample<D>>>>, MethodError> {
-        let values = Values::new(&solution.u, solution.split.as_ref());
+        let values = Values::new(solution);
         self.with_maker(problem, |maker| Ok(Some(maker.samples(points, &values))))
     }
 }
@@ -157,6 +158,13 @@ fn assemble<const D: usize>(
             out.add_to_row_sum(row.row_sum);
         }
     })?;
+    let mass = rows.iter().any(|row| !row.mass.is_empty()).then(|| {
+        DifferenceMatrix::from_rows(n, |i, out| {
+            let Some(row) = row_of[i] else { return };
+            row.neighbors.iter().zip(&row.mass[1..]).for_each(|(&j, &m)| out.push(j as usize, m));
+            out.add_to_row_sum(row.mass.iter().sum());
+        })
+    });
     let constants = if unknowns.constants() == 0 {
         None
     } else {
@@ -177,6 +185,7 @@ fn assemble<const D: usize>(
         rows: matrix,
         rhs,
         constants,
+        mass: mass.transpose()?,
         kinds,
         volumes,
         counts,

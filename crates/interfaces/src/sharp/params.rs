@@ -48,6 +48,8 @@ pub struct SharpParams {
     pub form: Form,
     /// Degree of the polynomials that sources are fitted by in Trefftz's form; `None` for one that suits the order.
     pub source_degree: Option<usize>,
+    /// The equation has a `du/dt`: rows get a mass.
+    pub unsteady: bool,
 }
 
 impl Default for SharpParams {
@@ -60,6 +62,7 @@ impl Default for SharpParams {
             equation_weight: 100.0,
             form: Form::Trefftz,
             source_degree: None,
+            unsteady: false,
         }
     }
 }

@@ -72,6 +72,19 @@ enum Equation {
 struct Part {
     equation: Equation,
     first_column: usize,
+    /// One more column: a source that is constant, and not known.
+    open: bool,
+}
+
+/// Whether a part is less conductive than that of the center. In time the rows of the center then leave du/dt in it open: their
+/// answer to it would have any sign and be as large as that to their own, and modes of stiff parts would grow by
+/// themselves. (The other way round it is what ties the flux to the softer side.)
+fn is_softer<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: usize) -> bool {
+    let eta = |place: usize| {
+        let node = stencil.part_of.iter().position(|&p| p == place)?;
+        Some(maker.problem.eta[stencil.nodes[node] as usize])
+    };
+    place > 0 && eta(place).zip(eta(0)).is_some_and(|(other, own)| other < own)
 }
 
 /// The polynomials of a stencil.
@@ -102,13 +115,16 @@ impl<const D: usize> Parts<D> {
             // Where diffusivity or source are no numbers somewhere near, rows see them at nodes of their own region only.
             let solved = match (maker.params.form, material.diffusivity.as_constant()) {
                 (Form::General, _) => None,
+                // The rates are sources at nodes, which rows see as they are.
+                (Form::Trefftz, None) if maker.rates.is_some() => None,
                 (Form::Trefftz, Some(eta)) => self.harmonic(maker, stencil, material, response / eta),
                 (Form::Trefftz, None) => self.adapted(maker, stencil, material, response),
             };
             let first_column = self.columns;
             let basis = if solved.is_some() { &maker.harmonic_basis } else { &maker.complete_basis };
-            self.columns += basis.len();
-            self.parts[place] = Part { equation: solved.unwrap_or_default(), first_column };
+            let open = maker.rates.is_some() && is_softer(maker, stencil, place);
+            self.columns += basis.len() + usize::from(open);
+            self.parts[place] = Part { equation: solved.unwrap_or_default(), first_column, open };
         }
     }
 
@@ -194,6 +210,29 @@ impl<const D: usize> Parts<D> {
     /// Whether the equation of a part is in rows.
     pub(super) fn has_rows(&self, part: usize) -> bool {
         matches!(self.parts[part].equation, Equation::Rows)
+    }
+
+    /// `R^2 / (eta s)` of a part in the harmonic form, of which `lap P` in z is that times `-f`; `None` for rows.
+    pub(super) fn response(&self, part: usize) -> Option<f64> {
+        match self.parts[part].equation {
+            Equation::Harmonic { unit, .. } => Some(-((2 * D) as f64) * unit),
+            _ => None,
+        }
+    }
+
+    /// The place of the column of the constant source of a part among its columns, and what a functional at the point that
+    /// was evaluated last has there, if it has it; an equation in rows has it on its right-hand side.
+    pub(super) fn open_source(&self, part: usize, functional: &Row<D>, jet: &Jet<D>) -> Option<(usize, f64)> {
+        let Part { equation, open, .. } = &self.parts[part];
+        let entry = match equation {
+            Equation::Rows => functional.laplacian,
+            _ => {
+                let square: f64 = self.z.iter().map(|z| z * z).sum();
+                let slope: f64 = self.z.iter().zip(functional.gradient).map(|(z, g)| 2.0 * z * g).sum();
+                functional.value * square + slope
+            }
+        };
+        open.then_some((jet.values.len(), entry))
     }
 
     /// Evaluates the functions of a part at z, their slopes if asked for, and what its particular part needs there.

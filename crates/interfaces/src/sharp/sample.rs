@@ -3,12 +3,14 @@
 use rayon::prelude::*;
 
 use super::maker::{Maker, Scratch};
-use crate::{MethodError, Sample, SplitValues};
+use crate::{MethodError, Sample, SystemSolution};
 
 /// A solution in the unknowns of the fits.
 pub(super) struct Values<'a> {
     w: &'a [f64],
     constants: &'a [f64],
+    /// `du/dt` at the nodes; empty in steady scenes.
+    rates: &'a [f64],
 }
 
 /// Whose fit a point belongs to.
@@ -20,10 +22,11 @@ struct Owner {
 
 impl<'a> Values<'a> {
     /// Of a solution: its own unknowns, or its nodal values where nothing floats.
-    pub(super) fn new(u: &'a [f64], split: Option<&'a SplitValues>) -> Self {
-        match split {
-            Some(split) => Self { w: &split.values, constants: &split.constants },
-            None => Self { w: u, constants: &[] },
+    pub(super) fn new(solution: &'a SystemSolution) -> Self {
+        let rates = solution.rates.as_deref().unwrap_or_default();
+        match &solution.split {
+            Some(split) => Self { w: &split.values, constants: &split.constants, rates },
+            None => Self { w: &solution.u, constants: &[], rates },
         }
     }
 }
@@ -57,7 +60,7 @@ impl<const D: usize> Maker<'_, D> {
         scratch: &mut Scratch<D>,
     ) -> Result<[f64; D], MethodError> {
         self.factor(i, scratch)?;
-        let Scratch { stencil, fit, combination } = scratch;
+        let Scratch { stencil, fit, combination, .. } = scratch;
         let reference: Vec<f64> = (0..stencil.parts.len())
             .map(|part| {
                 let first = stencil.part_of.iter().position(|&p| p == part);
@@ -100,7 +103,8 @@ impl<const D: usize> Maker<'_, D> {
     /// picture takes no longer than the rows did.
     pub(super) fn samples(&self, points: &[[f64; D]], values: &Values<'_>) -> Vec<Option<Sample<D>>> {
         let owners: Vec<Option<Owner>> = points.par_iter().map(|x| self.owner(x)).collect();
-        if points.len() <= self.problem.cloud.len() {
+        // The polynomials of rates are at hand for a functional only.
+        if points.len() <= self.problem.cloud.len() || !values.rates.is_empty() {
             let sample = |scratch: &mut Scratch<D>, (x, owner): (&[f64; D], &Option<Owner>)| {
                 self.sample(x, (*owner)?, values, scratch)
             };
@@ -154,12 +158,18 @@ impl<const D: usize> Maker<'_, D> {
 
     /// `s` times a functional of the own polynomial of the stencil that was factored last.
     fn evaluate(&self, axis: Option<usize>, values: &Values<'_>, scratch: &mut Scratch<D>) -> f64 {
-        let Scratch { stencil, fit, combination } = scratch;
+        let Scratch { stencil, fit, combination, rates, mass } = scratch;
         fit.functional(stencil, axis, combination);
+        let mut known = combination.known;
+        if let (Some(polynomials), false) = (&self.rates, values.rates.is_empty()) {
+            polynomials.of_any(self, stencil, fit, rates, mass);
+            known -=
+                stencil.nodes.iter().zip(&*mass).map(|(&j, m)| m * values.rates[j as usize]).sum::<f64>();
+        }
         let nodes = stencil.nodes.iter().zip(&combination.values).map(|(&j, h)| h * values.w[j as usize]);
         let parts = stencil.parts.iter().zip(&combination.constants);
         let constants = parts.map(|(&part, h)| h * self.constant(part, values));
         let scale = self.unknowns.scale[stencil.parts[0] as usize];
-        scale * (combination.known + nodes.sum::<f64>() + constants.sum::<f64>())
+        scale * (known + nodes.sum::<f64>() + constants.sum::<f64>())
     }
 }

@@ -28,7 +28,15 @@ pub(super) fn solve<const D: usize>(
     }
     let floating_constants = constants.split.extra();
     let split = Some(SplitValues { values: w, constants: solved.extra[..floating_constants].to_vec() });
-    Ok(SystemSolution { u, extra: Vec::new(), info: solved.info, floating_constants, up_to_constant, split })
+    Ok(SystemSolution {
+        u,
+        extra: Vec::new(),
+        info: solved.info,
+        floating_constants,
+        up_to_constant,
+        split,
+        rates: None,
+    })
 }
 
 /// The bordered system, and what elimination has left of the rows.

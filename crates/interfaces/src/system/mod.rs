@@ -3,6 +3,7 @@
 mod floating;
 mod given;
 mod linear;
+mod mass;
 mod prepared;
 mod pseudo_time;
 
@@ -12,6 +13,7 @@ use crate::{Discretization, MethodError, Problem};
 use floating::Floating;
 pub(crate) use floating::FloatingParts;
 pub use linear::{LinearSystem, linear_system};
+pub use mass::{Mass, MassRows, residual};
 pub use prepared::PreparedSystem;
 pub use pseudo_time::{PseudoTimeParams, PseudoTimeSolution, pseudo_time};
 
@@ -49,6 +51,8 @@ pub struct SystemSolution {
     pub up_to_constant: bool,
     /// The unknowns of a method that splits off constants itself.
     pub split: Option<SplitValues>,
+    /// `du/dt` at the nodes; `None` in steady scenes.
+    pub rates: Option<Vec<f64>>,
 }
 
 /// `w` and `C` of `u_i = sum_K sigma_K C_K + s_i w_i`: where `s` is tiny, `w` has digits that u has not.
@@ -95,7 +99,7 @@ pub fn solve<const D: usize>(
     let (mut u, info) = prepared.solve(&rhs)?;
     let extra = u.split_off(nodes);
     let floating_constants = prepared.floating_constants();
-    Ok(SystemSolution { u, extra, info, floating_constants, up_to_constant: false, split: None })
+    Ok(SystemSolution { u, extra, info, floating_constants, up_to_constant: false, split: None, rates: None })
 }
 
 /// A pure Neumann problem: one node is pinned, and an extra unknown takes up what is not balanced.
@@ -120,7 +124,15 @@ fn solve_unanchored<const D: usize>(
     let floating_constants = split.extra();
     check_balance(discretization, solved.extra[floating_constants])?;
     center(&mut u, volumes);
-    Ok(SystemSolution { u, extra: Vec::new(), info, floating_constants, up_to_constant: true, split: None })
+    Ok(SystemSolution {
+        u,
+        extra: Vec::new(),
+        info,
+        floating_constants,
+        up_to_constant: true,
+        split: None,
+        rates: None,
+    })
 }
 
 /// Whether sources and fluxes balance: `lambda` times the volumes had to be added.

@@ -1,8 +1,9 @@
 //! A system that is factored once and solved for many right-hand sides.
 
-use meshless_sparse::{DifferenceMatrix, Prepared, PreparedBordered, Reduced, SolveInfo, Split};
+use meshless_sparse::{Bordered, DifferenceMatrix, Prepared, PreparedBordered, Reduced, SolveInfo, Split};
 
-use super::{SystemParams, floating};
+use super::{SplitValues, SystemParams, floating};
+use crate::method::SplitRows;
 use crate::{MethodError, Problem};
 
 /// Marks a node whose value is prescribed.
@@ -23,12 +24,21 @@ pub struct PreparedSystem {
 enum Solver {
     Plain(Box<Prepared>),
     Split(Box<PreparedBordered>, Split),
+    /// Rows over `w` and `C` already, with the split of all nodes.
+    Given(Box<PreparedBordered>, Split),
 }
 
 /// The rows of the unknowns, prescribed values eliminated.
 fn reduce(rows: &DifferenceMatrix, known: &[bool]) -> Result<Reduced, MethodError> {
     let zeros: Vec<Option<f64>> = known.iter().map(|&k| k.then_some(0.0)).collect();
     Ok(rows.eliminate(&zeros, &vec![0.0; rows.n()])?)
+}
+
+/// Unknown of every node, or [`KNOWN`].
+fn unknowns(reduced: &Reduced, nodes: usize) -> Vec<u32> {
+    let mut unknown_of = vec![KNOWN; nodes];
+    (0..).zip(&reduced.map).for_each(|(k, &node)| unknown_of[node as usize] = k);
+    unknown_of
 }
 
 impl PreparedSystem {
@@ -50,16 +60,48 @@ impl PreparedSystem {
         Self::of(rows, reduced, split, params)
     }
 
+    /// The same for rows of a method that splits off constants itself; something fixes them all.
+    ///
+    /// # Errors
+    /// Those of the solver.
+    pub fn with_constants(
+        rows: DifferenceMatrix,
+        constants: &SplitRows,
+        known: &[bool],
+        params: &SystemParams,
+    ) -> Result<Self, MethodError> {
+        let reduced = reduce(&rows, known)?;
+        let unknown_of = unknowns(&reduced, rows.n());
+        let of = |node: u32| Some(unknown_of[node as usize]).filter(|&k| k != KNOWN);
+        let column = |column: &Vec<(u32, f64)>| {
+            column.iter().filter_map(|&(row, value)| of(row).map(|k| (k, value))).collect()
+        };
+        let columns = constants.columns.iter().map(column).collect();
+        let pinned = constants.split.pinned().iter().filter_map(|&node| of(node)).collect();
+        let scales = reduced.map.iter().map(|&node| constants.split.scale(node as usize)).collect();
+        let bordered = Bordered::new(reduced.matrix, columns, pinned, reduced.rhs)?.with_scales(scales)?;
+        let prepared = PreparedBordered::new(bordered, &params.solver)?;
+        Ok(Self { rows, unknown_of, solver: Solver::Given(Box::new(prepared), constants.split.clone()) })
+    }
+
     /// Prepares other rows of the same pattern, as those of another time step: what floats and what is prescribed stay, and
     /// the graph of regions is not looked at again. The rest does not depend on what was prepared before.
     ///
     /// # Errors
     /// Those of the solver, and a matrix of another size.
-    pub fn renewed(self, rows: DifferenceMatrix, params: &SystemParams) -> Result<Self, MethodError> {
+    pub fn renewed(
+        self,
+        rows: DifferenceMatrix,
+        constants: Option<&SplitRows>,
+        params: &SystemParams,
+    ) -> Result<Self, MethodError> {
         let known: Vec<bool> = self.unknown_of.iter().map(|&k| k == KNOWN).collect();
+        if let Some(constants) = constants {
+            return Self::with_constants(rows, constants, &known, params);
+        }
         let reduced = reduce(&rows, &known)?;
         let split = match self.solver {
-            Solver::Plain(_) => None,
+            Solver::Plain(_) | Solver::Given(..) => None,
             Solver::Split(_, split) => Some(split),
         };
         Self::of(rows, reduced, split, params)
@@ -78,8 +120,7 @@ impl PreparedSystem {
             }
             None => Solver::Plain(Box::new(Prepared::new(&reduced.matrix.to_csr(), &params.solver)?)),
         };
-        let mut unknown_of = vec![KNOWN; rows.n()];
-        (0..).zip(&reduced.map).for_each(|(k, &node)| unknown_of[node as usize] = k);
+        let unknown_of = unknowns(&reduced, rows.n());
         Ok(Self { rows, unknown_of, solver })
     }
 
@@ -87,7 +128,7 @@ impl PreparedSystem {
     pub fn floating_constants(&self) -> usize {
         match &self.solver {
             Solver::Plain(_) => 0,
-            Solver::Split(_, split) => split.extra(),
+            Solver::Split(_, split) | Solver::Given(_, split) => split.extra(),
         }
     }
 
@@ -96,6 +137,17 @@ impl PreparedSystem {
     /// # Errors
     /// Those of the solver.
     pub fn solve(&self, rhs: &[f64]) -> Result<(Vec<f64>, SolveInfo), MethodError> {
+        self.solve_split(rhs).map(|(u, _, info)| (u, info))
+    }
+
+    /// The same with `w` and `C`, where the rows act on these.
+    ///
+    /// # Errors
+    /// Those of the solver.
+    pub fn solve_split(
+        &self,
+        rhs: &[f64],
+    ) -> Result<(Vec<f64>, Option<SplitValues>, SolveInfo), MethodError> {
         let mut reduced = Vec::with_capacity(rhs.len());
         for (i, &b) in rhs.iter().enumerate().filter(|(i, _)| self.unknown_of[*i] != KNOWN) {
             let (columns, values) = self.rows.row(i);
@@ -108,8 +160,19 @@ impl PreparedSystem {
                 let solved = prepared.solve(&reduced)?;
                 (split.recover(&solved.values, &solved.extra)?, solved.info)
             }
+            Solver::Given(prepared, split) => {
+                let solved = prepared.solve(&reduced)?;
+                let values = self.expand(&solved.values, rhs);
+                let u = split.recover(&values, &solved.extra)?;
+                return Ok((u, Some(SplitValues { values, constants: solved.extra }), solved.info));
+            }
         };
+        Ok((self.expand(&solution, rhs), None, info))
+    }
+
+    /// Values of the unknowns, and those that are prescribed.
+    fn expand(&self, solution: &[f64], rhs: &[f64]) -> Vec<f64> {
         let value = |(&k, &b): (&u32, &f64)| if k == KNOWN { b } else { solution[k as usize] };
-        Ok((self.unknown_of.iter().zip(rhs).map(value).collect(), info))
+        self.unknown_of.iter().zip(rhs).map(value).collect()
     }
 }

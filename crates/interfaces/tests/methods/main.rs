@@ -17,5 +17,6 @@ mod particle_difference;
 mod phase_field;
 mod reaction;
 mod sharp;
+mod sharp_time;
 mod slits;
 mod support;

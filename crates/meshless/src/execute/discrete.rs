@@ -135,6 +135,13 @@ impl<const D: usize> Discrete<D> {
         Ok(())
     }
 
+    /// The values that a scene prescribes at the nodes.
+    pub(super) fn prescribed_at(&self, scene: &Scene) -> Result<Vec<Option<f64>>, Error> {
+        let boundary = Boundary::new(scene, &self.domain);
+        let conditions = boundary.at_nodes(scene, &self.cloud)?;
+        Ok(Problem { conditions: &conditions, ..self.problem() }.dirichlet())
+    }
+
     /// The problem as methods see it.
     pub(crate) fn problem(&self) -> Problem<'_, D> {
         Problem {

@@ -238,6 +238,28 @@ impl Split {
         columns
     }
 
+    /// `w` and `C` from `u`: the pinned nodes tell the constants.
+    ///
+    /// # Errors
+    /// [`MatrixError::Length`].
+    pub fn unknowns_of(&self, u: &[f64]) -> Result<(Vec<f64>, Vec<f64>), MatrixError> {
+        MatrixError::check_length("values", u.len(), self.group.len())?;
+        let mut constants = vec![0.0; self.extra()];
+        let level = |g: &GroupUnknowns, constants: &[f64]| -> f64 {
+            g.chain.iter().map(|link| link.factor * constants[link.cluster as usize]).sum()
+        };
+        // The constants of a chain from the outermost on.
+        let mut order: Vec<usize> = (0..self.extra()).collect();
+        order.sort_by_key(|&k| self.unknowns(self.pinned[k] as usize).chain.len());
+        for k in order {
+            let (node, own) = (self.pinned[k] as usize, self.unknowns(self.pinned[k] as usize));
+            constants[k] = (u[node] - level(own, &constants)) / own.factor(k as u32);
+        }
+        let levels: Vec<f64> = self.groups.iter().map(|g| level(g, &constants)).collect();
+        let own = |(u, &g): (&f64, &u32)| (u - levels[g as usize]) / self.groups[g as usize].scale;
+        Ok((u.iter().zip(&self.group).map(own).collect(), constants))
+    }
+
     /// `u` from `w` and `C`. Further extra unknowns, such as `lambda`, are ignored.
     ///
     /// # Errors

@@ -87,6 +87,7 @@ impl<const D: usize> Method<D> for SurfaceReaction {
             rows: matrix,
             rhs,
             constants: None,
+            mass: None,
             interface_points: Vec::new(),
             kinds,
             volumes,

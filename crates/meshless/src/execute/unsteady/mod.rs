@@ -46,7 +46,7 @@ pub(super) fn solve_in<const D: usize>(
     progress.stage(Stage::TimeSteps);
     let params = Params { tolerance: time.tolerance, whole: time.end, ..Params::default() };
     let mut frames = Vec::new();
-    let kept = checkpoint.map(|c| c.read(scene, plan, heat.nodes())).transpose()?.flatten();
+    let kept = checkpoint.map(|c| c.read(scene, plan, heat.unknowns())).transpose()?.flatten();
     let mut stepper = match kept {
         Some(kept) => {
             frames = kept.frames;
@@ -78,7 +78,9 @@ pub(super) fn solve_in<const D: usize>(
             frames.push(Frame { t: target, u: stepper.state().u.clone() });
         }
     }
-    let (heat, state) = stepper.into_parts();
+    let (heat, mut state) = stepper.into_parts();
+    let nodes = heat.nodes();
+    frames.iter_mut().for_each(|frame| frame.u.truncate(nodes));
     let report = TimeReport {
         end: time.end,
         steps: state.steps,
@@ -86,17 +88,19 @@ pub(super) fn solve_in<const D: usize>(
         matrices: heat.matrices,
         output: frames.iter().map(|frame| frame.t).collect(),
     };
-    let (discrete, discretization, info, spent) = heat.into_parts(time.end)?;
+    let (discrete, discretization, (info, split), spent) = heat.into_parts(time.end)?;
     seconds.stencils += spent.stencils;
     seconds.assembly = spent.assembly;
     seconds.solve = spent.solve;
+    state.slope.truncate(nodes);
     let system = SystemSolution {
+        extra: state.u.split_off(nodes),
         u: state.u,
-        extra: Vec::new(),
         info,
         floating_constants: 0,
         up_to_constant: false,
-        split: None,
+        split,
+        rates: Some(state.slope),
     };
     Ok(Solved { discrete, discretization, system, seconds, history: Some(History { report, frames }) })
 }

@@ -2,8 +2,10 @@
 
 use std::time::Instant;
 
-use meshless_interfaces::{Discretization, Method, PreparedSystem, RowKind, SystemParams};
-use meshless_sparse::{DifferenceMatrix, SolveInfo};
+use meshless_interfaces::{
+    Discretization, Mass, Method, PreparedSystem, RowKind, SplitValues, SystemParams, residual,
+};
+use meshless_sparse::SolveInfo;
 use meshless_time::Semidiscrete;
 
 use super::super::{Discrete, Progress};
@@ -14,7 +16,8 @@ use crate::scene::{Scene, Varying};
 
 /// The rows of a scene at one time, and what is made of them.
 ///
-/// The mass of a row is the volume that it stands for. Boundary rows and prescribed values have none.
+/// The mass of a row is the volume that it stands for, or what the method says. Boundary rows and prescribed values have
+/// none.
 pub(super) struct Heat<'a, const D: usize> {
     scene: &'a Scene,
     plan: &'a Plan,
@@ -24,13 +27,18 @@ pub(super) struct Heat<'a, const D: usize> {
     /// The scene as it is at the time for which `discretization` holds.
     now: Scene,
     discretization: Discretization,
-    mass: Vec<f64>,
+    mass: Mass,
     prepared: Option<Matrix>,
     info: Option<SolveInfo>,
+    /// The unknowns of the last stage, where a method splits off constants itself.
+    split: Option<SplitValues>,
     /// Matrices that were factored.
     pub(super) matrices: usize,
     seconds: Seconds,
 }
+
+/// How the last system was solved, and the unknowns `w` and `C` of the last stage.
+type Solved = (SolveInfo, Option<SplitValues>);
 
 /// `M / c + A` with its factors.
 struct Matrix {
@@ -49,7 +57,7 @@ impl<'a, const D: usize> Heat<'a, D> {
         let method = plan.method.params.build::<D>();
         let mut seconds = Seconds::default();
         let discretization = discretize(scene, &discrete, &*method, &mut seconds)?;
-        let mass = masses(&discretization);
+        let mass = Mass::of(&discretization)?;
         Ok(Self {
             scene,
             plan,
@@ -61,13 +69,19 @@ impl<'a, const D: usize> Heat<'a, D> {
             mass,
             prepared: None,
             info: None,
+            split: None,
             matrices: 0,
             seconds,
         })
     }
 
+    /// Unknowns: the nodes, and what else a method has.
+    pub(super) fn unknowns(&self) -> usize {
+        self.discretization.rows.n()
+    }
+
     pub(super) fn nodes(&self) -> usize {
-        self.mass.len()
+        self.discretization.kinds.len()
     }
 
     pub(super) fn discrete(&self) -> &Discrete<D> {
@@ -82,17 +96,14 @@ impl<'a, const D: usize> Heat<'a, D> {
     pub(super) fn into_parts(
         mut self,
         end: f64,
-    ) -> Result<(Discrete<D>, Discretization, SolveInfo, Seconds), Error> {
+    ) -> Result<(Discrete<D>, Discretization, Solved, Seconds), Error> {
         self.move_to(end)?;
-        let info = match self.info.take() {
-            Some(info) => info,
+        if self.info.is_none() {
             // A checkpoint at the very end leaves nothing to solve.
-            None => {
-                self.solve_for(DEFAULT_C, self.discretization.rhs.clone())?;
-                self.info.take().ok_or_else(|| Error::Time("no system was solved".to_owned()))?
-            }
-        };
-        Ok((self.discrete, self.discretization, info, self.seconds))
+            self.solve_for(DEFAULT_C, &self.discretization.rhs.clone())?;
+        }
+        let info = self.info.take().ok_or_else(|| Error::Time("no system was solved".to_owned()))?;
+        Ok((self.discrete, self.discretization, (info, self.split), self.seconds))
     }
 
     /// Makes the data anew for another time, where they depend on it.
@@ -110,49 +121,71 @@ impl<'a, const D: usize> Heat<'a, D> {
         self.discretization = discretize(&scene, &self.discrete, &*self.method, &mut self.seconds)?;
         self.now = scene;
         if changed.matrix {
-            self.mass = masses(&self.discretization);
+            self.mass = Mass::of(&self.discretization)?;
             self.prepared = None;
         }
         Ok(())
     }
 
     /// Solves `(M / c + A) u = rhs`.
-    fn solve_for(&mut self, c: f64, rhs: Vec<f64>) -> Result<Vec<f64>, Error> {
+    fn solve_for(&mut self, c: f64, rhs: &[f64]) -> Result<(Vec<f64>, Option<SplitValues>), Error> {
         let start = Instant::now();
-        if self.prepared.as_ref().is_none_or(|m| m.c != c) {
-            let split_floating = self.plan.runs(Stage::FloatingConstants);
-            let params = SystemParams { solver: self.plan.solver, split_floating };
-            let rows = self.shifted(c)?;
-            let system = match self.prepared.take() {
-                Some(old) => old.system.renewed(rows, &params),
-                None => {
-                    let kinds = &self.discretization.kinds;
-                    let known: Vec<bool> = kinds.iter().map(|&k| k == RowKind::Dirichlet).collect();
-                    PreparedSystem::new(&self.discrete.problem(), rows, &known, &params)
-                }
-            };
-            let system = system.map_err(|e| self.discrete.explain(self.scene, e))?;
-            self.prepared = Some(Matrix { c, system });
-            self.matrices += 1;
-        }
-        let Some(Matrix { system, .. }) = &self.prepared else { return Ok(rhs) };
-        let (u, info) = system.solve(&rhs).map_err(|e| self.discrete.explain(self.scene, e))?;
+        let matrix = match self.prepared.take() {
+            Some(matrix) if matrix.c == c => matrix,
+            other => self.factored(c, other.map(|old| old.system))?,
+        };
+        let solved = matrix.system.solve_split(rhs);
+        let (u, split, info) = solved.map_err(|e| self.discrete.explain(self.scene, e))?;
+        self.prepared = Some(matrix);
         self.info = Some(info);
         self.seconds.solve += start.elapsed().as_secs_f64();
-        Ok(u)
+        Ok((u, split))
     }
 
-    /// `M / c + A` in difference form: the mass goes to the sums of rows, no diagonal is formed.
-    fn shifted(&self, c: f64) -> Result<DifferenceMatrix, Error> {
-        let rows = &self.discretization.rows;
-        let shifted = DifferenceMatrix::from_rows(rows.n(), |i, out| {
-            let (columns, values) = rows.row(i);
-            columns.iter().zip(values).for_each(|(&j, &a)| out.push(j as usize, a));
-            out.add_to_row_sum(rows.row_sum(i) + self.mass[i] / c);
-        });
-        shifted.map_err(|e| Error::Time(e.to_string()))
+    fn factored(&mut self, c: f64, old: Option<PreparedSystem>) -> Result<Matrix, Error> {
+        // Constants of floating regions are found from the nodes alone.
+        let nodal = self.unknowns() == self.nodes();
+        let split_floating = nodal && self.plan.runs(Stage::FloatingConstants);
+        let params = SystemParams { solver: self.plan.solver, split_floating };
+        let (rows, constants) = self.mass.shifted(&self.discretization, c)?;
+        let system = match (old, &constants) {
+            (Some(old), _) => old.renewed(rows, constants.as_ref(), &params),
+            (None, Some(constants)) => {
+                PreparedSystem::with_constants(rows, constants, &self.prescribed(), &params)
+            }
+            (None, None) => PreparedSystem::new(&self.discrete.problem(), rows, &self.prescribed(), &params),
+        };
+        let system = system.map_err(|e| self.discrete.explain(self.scene, e))?;
+        self.matrices += 1;
+        Ok(Matrix { c, system })
+    }
+
+    /// Which unknowns are prescribed values.
+    fn prescribed(&self) -> Vec<bool> {
+        let mut known: Vec<bool> =
+            self.discretization.kinds.iter().map(|&kind| kind == RowKind::Dirichlet).collect();
+        known.resize(self.unknowns(), false);
+        known
+    }
+
+    /// Rates of the prescribed values at a time, by their difference over a share of the whole.
+    fn prescribed_rates(&self, t: f64) -> Result<Vec<f64>, Error> {
+        let mut rates = vec![0.0; self.nodes()];
+        let Some(time) = self.scene.time.as_ref().filter(|_| self.varying.data) else { return Ok(rates) };
+        let step = RATE_STEP * time.end;
+        let mut sides =
+            [t, t + step].into_iter().map(|t| self.discrete.prescribed_at(&self.scene.at_time(t)));
+        if let (Some(now), Some(later)) = (sides.next().transpose()?, sides.next().transpose()?) {
+            for (rate, (a, b)) in rates.iter_mut().zip(now.iter().zip(&later)) {
+                *rate = a.zip(*b).map_or(0.0, |(a, b)| (b - a) / step);
+            }
+        }
+        Ok(rates)
     }
 }
+
+/// Step of a difference quotient in time, over the whole time.
+const RATE_STEP: f64 = 1e-7;
 
 /// A step size for a solve of which only the report is wanted.
 const DEFAULT_C: f64 = 1.0;
@@ -170,39 +203,33 @@ fn discretize<const D: usize>(
     Ok(discretization)
 }
 
-fn masses(discretization: &Discretization) -> Vec<f64> {
-    let mass = |(kind, volume): (&RowKind, &f64)| match kind {
-        RowKind::Dirichlet | RowKind::StrongBoundary => 0.0,
-        _ => *volume,
-    };
-    discretization.kinds.iter().zip(&discretization.volumes).map(mass).collect()
-}
-
 impl<const D: usize> Semidiscrete for Heat<'_, D> {
     type Error = Error;
 
     fn slope(&mut self, t: f64, u: &[f64], out: &mut [f64]) -> Result<(), Error> {
         self.move_to(t)?;
-        self.discretization.rows.residual(u, &self.discretization.rhs, out);
-        self.mass.iter().zip(out).for_each(|(m, r)| *r = if *m > 0.0 { *r / m } else { 0.0 });
+        let (problem, kinds) = (self.discrete.problem(), &self.discretization.kinds);
+        let residual = residual(&self.discretization, u)?;
+        let prescribed = self.prescribed_rates(t)?;
+        let rates = self.mass.rates(&problem, kinds, &residual, &prescribed, &self.plan.solver);
+        out.copy_from_slice(&rates.map_err(|e| self.discrete.explain(self.scene, e))?);
         Ok(())
     }
 
     fn solve(&mut self, t: f64, c: f64, v: &[f64], u: &mut [f64]) -> Result<(), Error> {
         self.move_to(t)?;
-        let rhs = &self.discretization.rhs;
-        let rhs =
-            (0..rhs.len()).map(|i| rhs[i] + if self.mass[i] > 0.0 { self.mass[i] / c * v[i] } else { 0.0 });
-        let rhs = rhs.collect();
-        u.copy_from_slice(&self.solve_for(c, rhs)?);
+        let held = self.mass.times(v);
+        let rhs: Vec<f64> = self.discretization.rhs.iter().zip(held).map(|(b, m)| b + m / c).collect();
+        let (solved, split) = self.solve_for(c, &rhs)?;
+        u.copy_from_slice(&solved);
+        self.split = split;
         Ok(())
     }
 
     fn damp(&mut self, t: f64, c: f64, e: &mut [f64]) -> Result<(), Error> {
         self.move_to(t)?;
-        let rhs =
-            (0..e.len()).map(|i| if self.mass[i] > 0.0 { self.mass[i] / c * e[i] } else { 0.0 }).collect();
-        e.copy_from_slice(&self.solve_for(c, rhs)?);
+        let rhs: Vec<f64> = self.mass.times(e).into_iter().map(|m| m / c).collect();
+        e.copy_from_slice(&self.solve_for(c, &rhs)?.0);
         Ok(())
     }
 

@@ -9,7 +9,11 @@ use crate::scene::Scene;
 
 pub(super) fn params(scene: &Scene) -> SharpParams {
     let chosen = SharpParams::default();
-    SharpParams { order: scene.method.order.unwrap_or(chosen.order), ..chosen }
+    SharpParams {
+        order: scene.method.order.unwrap_or(chosen.order),
+        unsteady: scene.time.is_some(),
+        ..chosen
+    }
 }
 
 /// Nodes of a stencil for each harmonic polynomial of a part, in three dimensions.
@@ -24,8 +28,7 @@ pub(super) fn finer(params: &SharpParams, dimension: usize) -> Option<SharpParam
     (order <= MAX_ORDER[dimension - 1]).then_some(SharpParams { order, nodes, ..*params })
 }
 
-/// Orders that a dimension does not have, and scenes that change: the rows are residuals of interpolation, which have
-/// no mass of a node in front of du/dt.
+/// Orders that a dimension does not have, and jumps that change with time: how fast they do is no data of the rows.
 pub(super) fn check(scene: &Scene) -> Result<(), Error> {
     let highest = MAX_ORDER[scene.dimension - 1];
     if let Some(order) = scene.method.order.filter(|&order| order > highest) {
@@ -33,12 +36,13 @@ pub(super) fn check(scene: &Scene) -> Result<(), Error> {
         let error = scene.error_at_boundaries(message, format!("take an order up to {highest}"));
         return Err(error.into());
     }
-    match &scene.time {
-        Some(time) => {
-            let message = "the method \"sharp\" has no steps in time";
-            Err(time.place.error(message, "take another method, or a steady scene").into())
+    let jumps = scene.interfaces.iter().flat_map(|i| [&i.jump, &i.flux_jump]).flatten();
+    match jumps.into_iter().find(|jump| jump.varies_in_time(scene.dimension)) {
+        Some(jump) if scene.time.is_some() => {
+            let message = "the method \"sharp\" knows no jumps that change with time";
+            Err(jump.place.error(message, "take \"immersed-interface\", or a jump without t").into())
         }
-        None => Ok(()),
+        _ => Ok(()),
     }
 }
 

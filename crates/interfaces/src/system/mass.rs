@@ -1,0 +1,165 @@
+//! The mass of rows in time: `M du/dt + A u = b`.
+
+use meshless_sparse::{DifferenceMatrix, SolverKind, SolverParams};
+
+use super::{PreparedSystem, SystemParams};
+use crate::method::SplitRows;
+use crate::{Discretization, MethodError, Problem, RowKind};
+
+/// M of a discretisation.
+#[derive(Debug, Clone)]
+pub enum Mass {
+    /// The volume of every row; zero for those that are algebraic equations.
+    Diagonal(Vec<f64>),
+    /// Rows over the values of the nodes.
+    Rows(Box<MassRows>),
+}
+
+/// M that is not diagonal.
+#[derive(Debug, Clone)]
+pub struct MassRows {
+    nodal: DifferenceMatrix,
+    /// The same rows over `w`, and their columns of the constants, for methods that split these off.
+    split: Option<(DifferenceMatrix, Columns)>,
+}
+
+/// Entries of each column: row, value.
+type Columns = Vec<Vec<(u32, f64)>>;
+
+impl Mass {
+    /// The mass of all rows.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub fn of(discretization: &Discretization) -> Result<Self, MethodError> {
+        let Some(nodal) = &discretization.mass else {
+            let mass = |(kind, volume): (&RowKind, &f64)| match kind {
+                RowKind::Dirichlet | RowKind::StrongBoundary => 0.0,
+                _ => *volume,
+            };
+            let mut all: Vec<f64> =
+                discretization.kinds.iter().zip(&discretization.volumes).map(mass).collect();
+            // Further unknowns follow from the nodes.
+            all.resize(discretization.rows.n(), 0.0);
+            return Ok(Self::Diagonal(all));
+        };
+        let split = match &discretization.constants {
+            Some(SplitRows { split, .. }) => {
+                let rows = split.apply(nodal, &vec![0.0; nodal.n()])?;
+                Some((rows.matrix().clone(), rows.columns().to_vec()))
+            }
+            None => None,
+        };
+        Ok(Self::Rows(Box::new(MassRows { nodal: nodal.clone(), split })))
+    }
+
+    /// `M v`.
+    pub fn times(&self, v: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Diagonal(mass) => mass.iter().zip(v).map(|(m, v)| m * v).collect(),
+            Self::Rows(rows) => {
+                let mut out = vec![0.0; v.len()];
+                rows.nodal.mul_vec(v, &mut out);
+                out
+            }
+        }
+    }
+
+    /// `M / c + A` in difference form, with the columns of the constants where the rows have any: a mass goes to the sums of
+    /// rows, no diagonal is formed.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub fn shifted(
+        &self,
+        discretization: &Discretization,
+        c: f64,
+    ) -> Result<(DifferenceMatrix, Option<SplitRows>), MethodError> {
+        let rows = &discretization.rows;
+        let add = |i: usize, out: &mut meshless_sparse::RowBuilder| {
+            let (columns, values) = rows.row(i);
+            columns.iter().zip(values).for_each(|(&j, &a)| out.push(j as usize, a));
+            out.add_to_row_sum(rows.row_sum(i));
+        };
+        let of_mass = match self {
+            Self::Diagonal(mass) => {
+                let shifted = DifferenceMatrix::from_rows(rows.n(), |i, out| {
+                    add(i, out);
+                    out.add_to_row_sum(mass[i] / c);
+                })?;
+                return Ok((shifted, discretization.constants.clone()));
+            }
+            Self::Rows(of_mass) => of_mass,
+        };
+        let mass = of_mass.split.as_ref().map_or(&of_mass.nodal, |split| &split.0);
+        let shifted = DifferenceMatrix::from_rows(rows.n(), |i, out| {
+            add(i, out);
+            let (columns, values) = mass.row(i);
+            columns.iter().zip(values).for_each(|(&j, &m)| out.push(j as usize, m / c));
+            out.add_to_row_sum(mass.row_sum(i) / c);
+        })?;
+        let constants = match (&discretization.constants, &of_mass.split) {
+            (Some(constants), Some((_, of_mass))) => {
+                let mut constants = constants.clone();
+                for (column, mass) in constants.columns.iter_mut().zip(of_mass) {
+                    column.extend(mass.iter().map(|&(row, m)| (row, m / c)));
+                }
+                Some(constants)
+            }
+            _ => None,
+        };
+        Ok((shifted, constants))
+    }
+
+    /// The rates with `M du/dt = r`, where those of the nodes whose values are prescribed are given; zero in algebraic rows.
+    ///
+    /// # Errors
+    /// Those of the solver.
+    pub fn rates<const D: usize>(
+        &self,
+        problem: &Problem<'_, D>,
+        kinds: &[RowKind],
+        residual: &[f64],
+        prescribed: &[f64],
+        solver: &SolverParams,
+    ) -> Result<Vec<f64>, MethodError> {
+        let rows = match self {
+            Self::Diagonal(mass) => {
+                let rate = |(m, r): (&f64, &f64)| if *m > 0.0 { r / m } else { 0.0 };
+                return Ok(mass.iter().zip(residual).map(rate).collect());
+            }
+            Self::Rows(rows) => rows,
+        };
+        let prescribed_at = |i: usize| kinds[i] == RowKind::Dirichlet;
+        let algebraic =
+            |i: usize| rows.nodal.row_sum(i) == 0.0 && rows.nodal.row(i).1.iter().all(|&m| m == 0.0);
+        let known: Vec<bool> = (0..kinds.len()).map(|i| prescribed_at(i) || algebraic(i)).collect();
+        // The diagonal outweighs the rest: multigrid has nothing to do here.
+        let kind = match solver.kind {
+            SolverKind::Direct => SolverKind::Direct,
+            _ => SolverKind::Gmres { restart: 30 },
+        };
+        let params = SystemParams { solver: SolverParams { kind, ..*solver }, split_floating: false };
+        let rhs: Vec<f64> =
+            (0..known.len()).map(|i| if known[i] { prescribed[i] } else { residual[i] }).collect();
+        Ok(PreparedSystem::new(problem, rows.nodal.clone(), &known, &params)?.solve(&rhs)?.0)
+    }
+}
+
+/// `b - A u` for nodal values, further unknowns included.
+///
+/// # Errors
+/// Lengths that do not match.
+pub fn residual(discretization: &Discretization, u: &[f64]) -> Result<Vec<f64>, MethodError> {
+    let mut out = vec![0.0; u.len()];
+    let Some(SplitRows { split, columns }) = &discretization.constants else {
+        discretization.rows.residual(u, &discretization.rhs, &mut out);
+        return Ok(out);
+    };
+    let (w, constants) = split.unknowns_of(u)?;
+    discretization.rows.residual(&w, &discretization.rhs, &mut out);
+    for (column, c) in columns.iter().zip(&constants) {
+        column.iter().for_each(|&(row, value)| out[row as usize] -= value * c);
+    }
+    Ok(out)
+}
