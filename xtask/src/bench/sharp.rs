@@ -79,7 +79,7 @@ fn scenes() -> Result<Table, Failure> {
         }
     }
     let disc = |nodes| circle(1e2, 0.1, nodes, Regularity::Irregular(1));
-    for (order, nodes, target) in [(6, 35, [2e-8, 0.12]), (8, 45, [4e-10, 0.43])] {
+    for (order, nodes, target) in [(6, 30, [2e-8, 0.12]), (8, 41, [4e-10, 0.43])] {
         let name = format!("disc of variable diffusivity, order {order}");
         row(&mut table, &name, &reports(&disc(nodes), order)?, target);
     }
