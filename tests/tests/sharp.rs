@@ -3,6 +3,7 @@
 use meshless::interfaces::MethodError;
 use meshless::plan::{Plan, Stage};
 use meshless::scene::{MethodName, Scene};
+use meshless::sparse::SolverKind;
 use meshless::{Error, Silent, Solution, execute};
 use meshless_tests::kraus;
 use meshless_tests::order::observed;
@@ -146,4 +147,20 @@ fn where_the_plan_chose_the_method_it_falls_back_on_the_conservative_one() {
     // Nothing that the plan leaves out comes back.
     assert_eq!(report.estimate.l2, None);
     assert!(report.errors.expect("exact").l2 < 1e-1);
+}
+
+#[test]
+fn a_solver_that_gives_up_is_a_reason_to_fall_back_too() {
+    let scene =
+        Scene::parse(&kraus::interior(1e2, kraus::SUPPORT * 0.1, 1), "gallery.toml").expect("a scene");
+    let mut plan = Plan::new(&scene).expect("a plan");
+    assert_eq!((plan.method.name, plan.fallback), (MethodName::Sharp, Some(MethodName::GfdmHybrid)));
+    plan.solver.kind = SolverKind::Gmres { restart: 2 };
+    plan.solver.max_iterations = 2;
+    let report = execute(&scene, &plan, &mut Silent).expect("the conservative method solves it").report;
+    assert_eq!(report.method, "gfdm-hybrid");
+    let why = report.fallback.expect("why");
+    assert!(why.contains("in place of \"sharp\"") && why.contains("residual"), "{why}");
+    plan.fallback = None;
+    assert!(execute(&scene, &plan, &mut Silent).is_err());
 }

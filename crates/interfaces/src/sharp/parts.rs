@@ -163,9 +163,11 @@ impl<const D: usize> Parts<D> {
         let particular = maker.particular.as_ref()?;
         let mut values = std::mem::take(&mut self.values);
         let finite = self.sample(stencil, &particular.samples, field, &mut values);
-        values.iter_mut().for_each(|f| *f *= response);
         let mut coefficients = Vec::new();
-        particular.solve(&values, &mut coefficients);
+        if finite.is_some() {
+            values.iter_mut().for_each(|f| *f *= response);
+            particular.solve(&values, &mut coefficients);
+        }
         self.values = values;
         finite.map(|()| Equation::Harmonic { source: Source::Fitted(coefficients), unit })
     }
@@ -224,15 +226,17 @@ impl<const D: usize> Parts<D> {
     /// was evaluated last has there, if it has it; an equation in rows has it on its right-hand side.
     pub(super) fn open_source(&self, part: usize, functional: &Row<D>, jet: &Jet<D>) -> Option<(usize, f64)> {
         let Part { equation, open, .. } = &self.parts[part];
-        let entry = match equation {
-            Equation::Rows => functional.laplacian,
-            _ => {
-                let square: f64 = self.z.iter().map(|z| z * z).sum();
-                let slope: f64 = self.z.iter().zip(functional.gradient).map(|(z, g)| 2.0 * z * g).sum();
-                functional.value * square + slope
-            }
-        };
-        open.then_some((jet.values.len(), entry))
+        open.then(|| match equation {
+            Equation::Rows => (jet.values.len(), functional.laplacian),
+            _ => (jet.values.len(), self.of_square(functional)),
+        })
+    }
+
+    /// A functional of `|z|^2` at the point that was evaluated last.
+    fn of_square(&self, functional: &Row<D>) -> f64 {
+        let square: f64 = self.z.iter().map(|z| z * z).sum();
+        let slope: f64 = self.z.iter().zip(functional.gradient).map(|(z, g)| 2.0 * z * g).sum();
+        functional.value * square + slope + functional.laplacian * (2 * D) as f64
     }
 
     /// Evaluates the functions of a part at z, their slopes if asked for, and what its particular part needs there.
@@ -280,10 +284,7 @@ impl<const D: usize> Parts<D> {
         match &self.parts[part].equation {
             Equation::Rows => [0.0; 2],
             Equation::Harmonic { source, unit } => {
-                let square: f64 = self.z.iter().map(|z| z * z).sum();
-                let slope: f64 = self.z.iter().zip(functional.gradient).map(|(z, g)| 2.0 * z * g).sum();
-                let of_one =
-                    unit * (functional.value * square + slope + functional.laplacian * (2 * D) as f64);
+                let of_one = unit * self.of_square(functional);
                 let of_source = match source {
                     Source::None => 0.0,
                     Source::Constant(f) => f * of_one,
