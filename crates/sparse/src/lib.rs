@@ -3,7 +3,7 @@
 //! - [`Csr`]: compressed rows with 32-bit columns, built from rows in parallel; products in parallel.
 //! - [`DifferenceMatrix`]: rows as `sum_j a_ij (u_j - u_i) + r_i u_i`, which keeps what ten orders of magnitude of contrast
 //!   would round away; elimination of prescribed values; signs and sums ([`MatrixReport`]).
-//! - [`solve`] and [`Prepared`]: sparse LU or `L L^T` with refinement, BiCGStab(l), GMRES, conjugate gradients, all stopped by
+//! - [`solve`] and [`Prepared`]: sparse LU or `L L^T` with refinement, BiCGStab(l), GMRES, IDR(s), conjugate gradients, all stopped by
 //!   the true residual; [`Preconditioner`]s.
 //! - [`clusters`], [`Split`], [`Bordered`]: the constants of stiff regions that nothing prescribed holds, as unknowns of
 //!   their own; [`pure_neumann`] for problems that nothing holds at all.
@@ -54,7 +54,8 @@ pub use floating::{
 };
 pub use market::{MarketError, read_matrix_market, write_matrix_market};
 pub use multigrid::{
-    Coarsening, CycleKind, HierarchyInfo, Multigrid, MultigridParams, Restriction, SmootherKind, StrengthKind,
+    Candidate, Coarsening, CycleKind, HierarchyInfo, Multigrid, MultigridParams, ProlongationKind,
+    Restriction, SmootherKind, StrengthKind,
 };
 pub use precond::{IncompleteLu, Jacobi, Preconditioner, PreconditionerKind, ilu0, ilut};
 pub use solver::{

@@ -4,9 +4,9 @@ mod common;
 
 use common::{Grid, distance, grid};
 use meshless_sparse::{
-    ChainLink, Coarsening, Csr, CycleKind, DifferenceMatrix, GroupUnknowns, MultigridParams,
-    PreconditionerKind, Prepared, Restriction, SmootherKind, SolveError, SolveInfo, SolverKind, SolverParams,
-    Split, StrengthKind, solve,
+    Candidate, ChainLink, Coarsening, Csr, CycleKind, DifferenceMatrix, GroupUnknowns, MultigridParams,
+    PreconditionerKind, Prepared, ProlongationKind, Restriction, SmootherKind, SolveError, SolveInfo,
+    SolverKind, SolverParams, Split, StrengthKind, solve,
 };
 
 const RADIUS: f64 = 0.3;
@@ -59,7 +59,7 @@ fn iterations_hardly_grow_with_nodes_or_contrast() {
 #[test]
 fn a_stiff_disc_with_its_constant_split_off_is_as_accurate_as_by_the_direct_method() {
     // At moderate contrasts aggregates reach across the interface.
-    for contrast in [12.0, 50.0, 200.0, 1e4, 1e10] {
+    for contrast in [12.0, 50.0, 200.0, 1e4, 1e10, 1e12, 1e14] {
         let grid = disc(60, contrast);
         let map = &grid.reduced.map;
         let group: Vec<u32> =
@@ -76,7 +76,8 @@ fn a_stiff_disc_with_its_constant_split_off_is_as_accurate_as_by_the_direct_meth
             let system = split.apply(&grid.reduced.matrix, &grid.reduced.rhs).unwrap();
             let solved = system.solve(params).unwrap();
             assert!(
-                params.kind != SolverKind::Multigrid || solved.info.iterations <= 24,
+                params.kind != SolverKind::Multigrid
+                    || solved.info.iterations <= if contrast > 1e12 { 24 } else { 15 },
                 "{contrast:e}: {:?}",
                 solved.info
             );
@@ -202,6 +203,11 @@ fn scaling_and_numbering_change_at_most_one_iteration() {
     let permuted_b: Vec<f64> = order.iter().map(|&i| b[i as usize]).collect();
     let permuted = iterations(&a.permuted(&order).unwrap(), &permuted_b, &multigrid()).iterations;
     assert!(permuted.abs_diff(reference) <= 1, "{permuted} {reference}");
+    // By lot: no order for aggregates and sweeps, until one is found.
+    let shuffled: Vec<u32> = (0..a.nrows()).map(|k| (k * 1009 % a.nrows()) as u32).collect();
+    let shuffled_b: Vec<f64> = shuffled.iter().map(|&i| b[i as usize]).collect();
+    let shuffled = iterations(&a.permuted(&shuffled).unwrap(), &shuffled_b, &multigrid()).iterations;
+    assert!(shuffled.abs_diff(reference) <= 1, "{shuffled} {reference}");
 }
 
 #[test]
@@ -267,6 +273,13 @@ fn every_kind_of_coarsening_converges() {
         MultigridParams { coarsening: Coarsening::RugeStuebenExtended, ..base },
         MultigridParams { strength: StrengthKind::Evolution, ..base },
         MultigridParams { restriction: Restriction::Own, ..base },
+        MultigridParams { prolongation: ProlongationKind::EnergyMinimizing, ..base },
+        MultigridParams {
+            prolongation: ProlongationKind::EnergyMinimizing,
+            restriction: Restriction::Own,
+            ..base
+        },
+        MultigridParams { candidate: Candidate::Constant, ..base },
         MultigridParams { smoother: SmootherKind::ColoredGaussSeidel, ..base },
         MultigridParams { smoother: SmootherKind::Chebyshev, ..base },
     ];
@@ -287,8 +300,10 @@ fn refreshed_levels_serve_a_matrix_with_other_values() {
     let changed = after.reduced.matrix.to_csr();
     let exact = solve(&changed, b, &direct()).unwrap().0;
     let chain = SolverParams { kind: SolverKind::Multigrid, ..multigrid() };
+    let constant =
+        with(MultigridParams { coarsest: 40, candidate: Candidate::Constant, ..Default::default() });
     let jacobi = SolverParams { preconditioner: PreconditionerKind::Jacobi, ..multigrid() };
-    for params in [multigrid(), chain, jacobi, direct()] {
+    for params in [multigrid(), constant, chain, jacobi, direct()] {
         let mut prepared = Prepared::new(&a, &params).unwrap();
         prepared.refresh(&changed).unwrap();
         let solved = prepared.solve_all(&[b.clone(), vec![0.0; b.len()]]).unwrap();

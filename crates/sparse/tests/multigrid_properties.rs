@@ -100,8 +100,8 @@ proptest! {
         let all = vec![f64::from(power).exp2() * factor; a.nrows()];
         let scaled = count(&a.row_scaled(&all).unwrap(), &b).unwrap();
         prop_assert!(scaled.abs_diff(reference) <= 1, "scaled: {scaled} {reference}");
-        // A shuffle leaves Gauss-Seidel no direction and aggregation no order: 12 instead of 10 iterations have been seen.
         let permuted = count(&a.permuted(&order).unwrap(), &b).unwrap();
+        // Mostly by 1, and on the average by nothing, see below.
         prop_assert!(permuted.abs_diff(reference) <= 3, "permuted: {permuted} {reference}");
     }
 
@@ -130,4 +130,28 @@ proptest! {
             Ok((_, info)) => prop_assert!(false, "solved by {}, {:e}", info.name, info.residual),
         }
     }
+}
+
+#[test]
+fn a_shuffle_costs_nothing_on_the_average() {
+    let (mut natural, mut shuffled) = (0, 0);
+    for seed in 0..100u64 {
+        // The finaliser of splitmix64.
+        let bits = |k: usize| {
+            let mut z = (seed * 1_000_003 + k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            (z ^ (z >> 31)) >> 40
+        };
+        let m = 14 + (seed % 8) as usize;
+        let levels: Vec<f64> = (0..m * m).map(|k| bits(k) as f64 / f64::from(1 << 23) - 1.0).collect();
+        let (a, b) = five_point(m, &levels);
+        let mut order: Vec<u32> = (0..(m * m) as u32).collect();
+        order.sort_by_key(|&i| bits(100_000 + i as usize));
+        let count = |a: &Csr| solve(a, &b, &multigrid(1e-10)).unwrap().1.iterations;
+        natural += count(&a);
+        shuffled += count(&a.permuted(&order).unwrap());
+    }
+    // Two tenths of an iteration; without a new numbering it is almost one.
+    assert!(natural.abs_diff(shuffled) <= 20, "{natural} {shuffled} in 100 fields");
 }

@@ -60,7 +60,8 @@ fn every_solver() -> Vec<SolverParams> {
     let ilut = PreconditionerKind::Ilut { fill: 10, drop: 1e-4 };
     let kinds = [1, 2, 4].map(|l| SolverKind::BiCgStab { l });
     let mut all = vec![SolverParams { kind: SolverKind::Direct, ..SolverParams::default() }];
-    for kind in kinds.into_iter().chain([SolverKind::Gmres { restart: 50 }]) {
+    let others = [SolverKind::Gmres { restart: 50 }, SolverKind::Idr { s: 1 }, SolverKind::Idr { s: 4 }];
+    for kind in kinds.into_iter().chain(others) {
         for preconditioner in [PreconditionerKind::Jacobi, PreconditionerKind::Ilu0, ilut] {
             all.push(SolverParams { kind, preconditioner, tolerance: 1e-13, ..SolverParams::default() });
         }

@@ -12,8 +12,13 @@ fn with(kind: SolverKind) -> SolverParams {
     SolverParams { kind, ..SolverParams::default() }
 }
 
-const KINDS: [SolverKind; 4] =
-    [SolverKind::Direct, SolverKind::BiCgStab { l: 2 }, SolverKind::Gmres { restart: 30 }, SolverKind::Cg];
+const KINDS: [SolverKind; 5] = [
+    SolverKind::Direct,
+    SolverKind::BiCgStab { l: 2 },
+    SolverKind::Gmres { restart: 30 },
+    SolverKind::Idr { s: 4 },
+    SolverKind::Cg,
+];
 
 #[test]
 fn a_singular_matrix_is_named_not_solved() {
@@ -77,7 +82,7 @@ fn a_rotation_defeats_plain_bicgstab_but_not_the_others() {
     let none = |kind| SolverParams { preconditioner: PreconditionerKind::None, ..with(kind) };
     let error = solve(&a, &[1.0, 0.0], &none(SolverKind::BiCgStab { l: 1 })).unwrap_err();
     assert!(matches!(error, SolveError::BreakDown { .. }), "{error}");
-    for kind in [SolverKind::Gmres { restart: 5 }, SolverKind::Direct] {
+    for kind in [SolverKind::Gmres { restart: 5 }, SolverKind::Idr { s: 2 }, SolverKind::Direct] {
         let (x, _) = solve(&a, &[1.0, 0.0], &none(kind)).unwrap();
         assert!(distance(&x, &[0.0, 1.0]) < 1e-15, "{kind:?}: {x:?}");
     }
@@ -134,6 +139,7 @@ fn input_that_cannot_be_solved_is_refused() {
         SolverParams { backward_error: Some(2.0), ..with(SolverKind::Direct) },
         with(SolverKind::BiCgStab { l: 0 }),
         with(SolverKind::Gmres { restart: 0 }),
+        with(SolverKind::Idr { s: 0 }),
         SolverParams {
             preconditioner: PreconditionerKind::Ilut { fill: 1, drop: -1.0 },
             ..with(SolverKind::Cg)
@@ -153,7 +159,7 @@ fn a_componentwise_error_is_reached_where_it_is_asked_for() {
     });
     let a = matrix.unwrap().to_csr();
     let b: Vec<f64> = (0..n).map(|i| if i < 20 { 1.0 } else { 0.0 }).collect();
-    for kind in [SolverKind::BiCgStab { l: 2 }, SolverKind::Gmres { restart: 30 }] {
+    for kind in [SolverKind::BiCgStab { l: 2 }, SolverKind::Gmres { restart: 30 }, SolverKind::Idr { s: 4 }] {
         let jacobi =
             SolverParams { preconditioner: PreconditionerKind::Jacobi, tolerance: 1e-6, ..with(kind) };
         let loose = solve(&a, &b, &jacobi).unwrap().1;
@@ -222,7 +228,7 @@ fn a_pure_neumann_problem_gives_the_solution_and_the_incompatibility() {
     grid.matrix.mul_vec(&exact, &mut rhs);
     rhs.iter_mut().for_each(|b| *b += 0.125);
     let pin = 7 * m + 3;
-    for kind in KINDS[..3].iter().copied() {
+    for kind in KINDS[..4].iter().copied() {
         let solution = pure_neumann(&grid.matrix, &rhs, &vec![1.0; m * m], pin, &with(kind)).unwrap();
         let shifted: Vec<f64> = exact.iter().map(|u| u - exact[pin]).collect();
         assert!((solution.lambda - 0.125).abs() < 1e-11, "{kind:?}: {}", solution.lambda);

@@ -2,7 +2,7 @@
 
 use meshless_interfaces::sharp::Sharp;
 use meshless_sparse::{
-    MultigridParams, PreconditionerKind, Restriction, SmootherKind, SolverKind, SolverParams,
+    Candidate, MultigridParams, PreconditionerKind, Restriction, SmootherKind, SolverKind, SolverParams,
 };
 
 use super::effects::{Effect, Survey};
@@ -141,6 +141,7 @@ fn multigrid(method: MethodName, survey: &Survey) -> MultigridParams {
         MethodName::Sharp => MultigridParams {
             smoother: SmootherKind::Ilu0,
             restriction: Restriction::Own,
+            candidate: Candidate::Constant,
             ..MultigridParams::default()
         },
         _ => MultigridParams::default(),

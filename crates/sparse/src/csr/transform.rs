@@ -67,6 +67,22 @@ impl Csr {
         Ok(scaled)
     }
 
+    /// The matrix with column `j` multiplied by `factors[j]`.
+    ///
+    /// # Errors
+    /// Those of [`Csr::row_scaled`].
+    pub fn columns_scaled(&self, factors: &[f64]) -> Result<Self, MatrixError> {
+        MatrixError::check_length("column factors", factors.len(), self.ncols())?;
+        let mut values = vec![0.0; self.nnz()];
+        for_each_row_of(&self.offsets, &mut values, |i, scaled| {
+            let (columns, row) = self.row(i);
+            scaled.iter_mut().zip(row).zip(columns).for_each(|((s, v), &j)| *s = v * factors[j as usize]);
+        });
+        let scaled = Self::from_trusted(self.ncols, self.offsets.clone(), self.indices.clone(), values);
+        scaled.require_finite()?;
+        Ok(scaled)
+    }
+
     /// Whether the matrix equals its transpose, entry by entry.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Systems with a few extra unknowns, solved by block elimination.
 
 use super::prepared::PreparedBordered;
+use super::split::Split;
 use crate::csr::{Csr, for_each_row};
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
@@ -24,6 +25,8 @@ pub struct Bordered {
     rhs: Vec<f64>,
     /// `s`, see [`Bordered::with_scales`]; empty where all are 1.
     scales: Vec<f64>,
+    /// How nodal values are made of all unknowns, where that is known.
+    split: Option<Split>,
 }
 
 /// Solution of a [`Bordered`] system.
@@ -75,7 +78,7 @@ impl Bordered {
                 });
             }
         }
-        Ok(Self { matrix, columns, pinned, rhs, scales: Vec::new() })
+        Ok(Self { matrix, columns, pinned, rhs, scales: Vec::new(), split: None })
     }
 
     /// The same, with the scales `s` of the values: fields that are smooth and cheap are smooth in `s w`, not in `w`, and
@@ -90,6 +93,16 @@ impl Bordered {
         }
         self.scales = if scales.iter().all(|&s| s == 1.0) { Vec::new() } else { scales };
         Ok(self)
+    }
+
+    /// The same, with the split that gives the nodal values; its clusters are all the extra unknowns.
+    pub(super) fn with_split(mut self, split: Split) -> Self {
+        self.split = Some(split);
+        self
+    }
+
+    pub(super) fn split(&self) -> Option<&Split> {
+        self.split.as_ref()
     }
 
     /// The scales, see [`Bordered::with_scales`]; empty where all are 1.

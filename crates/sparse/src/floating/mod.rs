@@ -8,6 +8,7 @@ mod direct;
 mod eliminated;
 mod joined;
 mod neumann;
+mod nodal;
 mod prepared;
 mod split;
 

@@ -5,6 +5,7 @@ use super::coupled::Coupled;
 use super::direct::Direct;
 use super::eliminated::Eliminated;
 use super::joined::{self, PinnedRows};
+use super::nodal;
 use crate::error::MatrixError;
 use crate::multigrid::HierarchyInfo;
 use crate::precond::PreconditionerKind;
@@ -13,8 +14,9 @@ use std::sync::OnceLock;
 
 /// A [`Bordered`] system with what is computed once for all right-hand sides.
 ///
-/// The direct method factorises all equations together. With multigrid, GMRES runs on all of them, and the Schur complement of
-/// rough responses is part of its preconditioner: one solve for a right-hand side, whatever the number of extra unknowns.
+/// The direct method factorises all equations together. With multigrid, GMRES runs on all of them: one solve for a right-hand side,
+/// whatever the number of extra unknowns. Where these are the constants of a [`Split`](crate::Split), the levels are made in nodal
+/// values; else the Schur complement of rough responses is part of the preconditioner.
 /// The other methods solve with `A'` once for each extra unknown and once for the right-hand side, and refine the whole.
 ///
 /// Where multigrid stagnates, elimination by BiCGStab(2) with ILU(0) steps in, and for that, up to
@@ -24,6 +26,8 @@ pub struct PreparedBordered {
     system: Bordered,
     params: SolverParams,
     coupled: Option<(Prepared, Coupled)>,
+    /// Multigrid in nodal values, instead of `coupled`.
+    nodal: Option<Prepared>,
     /// Made when they are needed.
     eliminated: OnceLock<Eliminated>,
     direct: OnceLock<Direct>,
@@ -43,7 +47,7 @@ impl PreparedBordered {
         };
         let params = SolverParams { kind, ..*params };
         let (eliminated, direct) = (OnceLock::new(), OnceLock::new());
-        let mut new = Self { system, params, coupled: None, eliminated, direct };
+        let mut new = Self { system, params, coupled: None, nodal: None, eliminated, direct };
         match kind {
             _ if new.system.extra() == 0 => {
                 new.eliminated()?;
@@ -55,6 +59,10 @@ impl PreparedBordered {
                 }
                 direct => new.direct = OnceLock::from(direct?),
             },
+            SolverKind::Multigrid if nodal::split(&new.system).is_some() => {
+                let matrix = nodal::matrix(&new.system)?;
+                new.nodal = Some(Prepared::multigrid(&matrix, new.system.factors(), &params)?);
+            }
             SolverKind::Multigrid => {
                 new.coupled = coupled(&new.system, &params)?;
                 if new.coupled.is_none() {
@@ -79,7 +87,10 @@ impl PreparedBordered {
     pub fn hierarchy(&self) -> Option<&HierarchyInfo> {
         match &self.coupled {
             Some((prepared, _)) => prepared.hierarchy(),
-            None => self.eliminated.get().and_then(Eliminated::hierarchy),
+            None => match &self.nodal {
+                Some(prepared) => prepared.hierarchy(),
+                None => self.eliminated.get().and_then(Eliminated::hierarchy),
+            },
         }
     }
 
@@ -97,6 +108,13 @@ impl PreparedBordered {
         if let (Some((prepared, coupled)), None) = (&self.coupled, self.eliminated.get())
             && let Some(levels) = prepared.levels()
             && let Ok((values, extra, info)) = coupled.solve(system, &levels, rhs, &self.params)
+        {
+            return Ok(BorderedSolution { values, extra, info });
+        }
+        if let (Some(prepared), Some(split), None) =
+            (&self.nodal, nodal::split(system), self.eliminated.get())
+            && let Some(levels) = prepared.levels()
+            && let Ok((values, extra, info)) = nodal::solve(system, split, &levels, rhs, &self.params)
         {
             return Ok(BorderedSolution { values, extra, info });
         }

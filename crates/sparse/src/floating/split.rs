@@ -2,6 +2,7 @@
 
 use super::bordered::Bordered;
 use super::clusters::Cluster;
+use crate::csr::for_each_row;
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
 
@@ -160,6 +161,7 @@ impl Split {
     pub fn apply(&self, matrix: &DifferenceMatrix, rhs: &[f64]) -> Result<Bordered, MatrixError> {
         Bordered::new(self.scaled(matrix)?, self.columns(matrix), self.pinned.clone(), rhs.to_vec())?
             .with_scales(self.scales())
+            .map(|bordered| if self.extra() > 0 { bordered.with_split(self.clone()) } else { bordered })
     }
 
     /// The same for a pure Neumann problem: `lambda` times `column` is added to the equations, as the last extra
@@ -244,6 +246,14 @@ impl Split {
     /// [`MatrixError::Length`].
     pub fn unknowns_of(&self, u: &[f64]) -> Result<(Vec<f64>, Vec<f64>), MatrixError> {
         MatrixError::check_length("values", u.len(), self.group.len())?;
+        let mut w = u.to_vec();
+        let constants = self.take_constants(&mut w);
+        w.iter_mut().enumerate().for_each(|(i, w)| *w /= self.scale(i));
+        Ok((w, constants))
+    }
+
+    /// Takes the constants out of nodal values, which become `s w`, and gives them.
+    pub(super) fn take_constants(&self, u: &mut [f64]) -> Vec<f64> {
         let mut constants = vec![0.0; self.extra()];
         let level = |g: &GroupUnknowns, constants: &[f64]| -> f64 {
             g.chain.iter().map(|link| link.factor * constants[link.cluster as usize]).sum()
@@ -256,8 +266,8 @@ impl Split {
             constants[k] = (u[node] - level(own, &constants)) / own.factor(k as u32);
         }
         let levels: Vec<f64> = self.groups.iter().map(|g| level(g, &constants)).collect();
-        let own = |(u, &g): (&f64, &u32)| (u - levels[g as usize]) / self.groups[g as usize].scale;
-        Ok((u.iter().zip(&self.group).map(own).collect(), constants))
+        for_each_row(u, |i, u| *u -= levels[self.group[i] as usize]);
+        constants
     }
 
     /// `u` from `w` and `C`. Further extra unknowns, such as `lambda`, are ignored.

@@ -2,6 +2,7 @@
 
 use super::strength::Graph;
 use crate::csr::Csr;
+use rayon::prelude::*;
 
 /// In no aggregate.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -13,30 +14,23 @@ pub(crate) struct Aggregates {
     pub(crate) count: usize,
 }
 
+/// Rows of a block that is gone through in order, beside other blocks. Their size, not the number of threads, decides about the
+/// result; what is lost are the aggregates that would lie across the ends of blocks.
+const BLOCK: usize = 65_536;
+
 /// Standard aggregation (Vaněk, Mandel and Brezina, Computing 56, 1996, algorithm 2): nodes in order found an aggregate
 /// with all their strong neighbours if these are still free; what is left joins the aggregate to which it is tied most;
 /// the rest founds aggregates with the free neighbours it has. Nodes whose bonds are strong one way only, or not at all,
 /// join that of their largest entry; settled ones stay out.
 pub(crate) fn standard(a: &Csr, graph: &Graph) -> Aggregates {
-    let n = graph.len();
-    let mut of = vec![NONE; n];
-    let mut count: u32 = 0;
-    for i in 0..n {
-        let neighbors = graph.neighbors(i);
-        if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(|&j| of[j as usize] == NONE) {
-            of[i] = count;
-            neighbors.iter().for_each(|&j| of[j as usize] = count);
-            count += 1;
-        }
-    }
-    let founded = of.clone();
-    for i in (0..n).filter(|&i| founded[i] == NONE) {
+    let (founded, mut count) = founded(graph, BLOCK);
+    let join = |i: usize| {
         let tied = graph.of(i).filter(|(j, _)| founded[*j] != NONE);
-        if let Some((j, _)) = tied.fold(None, stronger) {
-            of[i] = founded[j];
-        }
-    }
-    for i in 0..n {
+        let own = Some(founded[i]).filter(|&k| k != NONE);
+        own.or_else(|| tied.fold(None, stronger).map(|(j, _)| founded[j])).unwrap_or(NONE)
+    };
+    let mut of: Vec<u32> = (0..graph.len()).into_par_iter().with_min_len(4096).map(join).collect();
+    for i in 0..of.len() {
         if of[i] == NONE && !graph.neighbors(i).is_empty() {
             of[i] = count;
             for &j in graph.neighbors(i) {
@@ -49,6 +43,36 @@ pub(crate) fn standard(a: &Csr, graph: &Graph) -> Aggregates {
     }
     adopt(a, graph, &mut of, &mut count);
     Aggregates { of, count: count as usize }
+}
+
+/// The aggregates of nodes with all their strong neighbours, block by block in parallel, and how many these are.
+pub(super) fn founded(graph: &Graph, block: usize) -> (Vec<u32>, u32) {
+    let mut of = vec![NONE; graph.len()];
+    let in_block = |(k, of): (usize, &mut [u32])| {
+        let first = k * block;
+        let mut count: u32 = 0;
+        for i in 0..of.len() {
+            let neighbors = graph.neighbors(first + i);
+            let place = |j: u32| (j as usize).wrapping_sub(first);
+            let free = |&j: &u32| of.get(place(j)) == Some(&NONE);
+            if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(free) {
+                of[i] = count;
+                neighbors.iter().for_each(|&j| of[place(j)] = count);
+                count += 1;
+            }
+        }
+        count
+    };
+    let counts: Vec<u32> = of.par_chunks_mut(block).enumerate().map(in_block).collect();
+    let before = counts.iter().scan(0, |sum, count| {
+        *sum += count;
+        Some(*sum - count)
+    });
+    let before: Vec<u32> = before.collect();
+    of.par_chunks_mut(block).zip(&before).for_each(|(of, before)| {
+        of.iter_mut().filter(|k| **k != NONE).for_each(|k| *k += before);
+    });
+    (of, counts.iter().sum())
 }
 
 /// The stronger of two neighbours, the first of equals.

@@ -2,13 +2,17 @@
 
 mod aggregation;
 mod blocks;
+mod candidate;
 mod chebyshev;
 mod coarse;
 mod colored;
 mod cycle;
+mod energy;
 mod evolution;
+mod frame;
 mod galerkin;
 mod kept;
+mod numbering;
 mod pairwise;
 mod params;
 mod prolongation;
@@ -23,10 +27,13 @@ use crate::error::MatrixError;
 use crate::precond::Preconditioner;
 use crate::solver::SolveError;
 use coarse::Coarse;
+use frame::Frame;
 pub use params::{
-    Coarsening, CycleKind, HierarchyInfo, MultigridParams, Restriction, SmootherKind, StrengthKind,
+    Candidate, Coarsening, CycleKind, HierarchyInfo, MultigridParams, ProlongationKind, Restriction,
+    SmootherKind, StrengthKind,
 };
 use smoother::Smoother;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Levels at most; each has a fraction of the unknowns of the one before, so more are never reached.
@@ -48,6 +55,7 @@ struct Level {
 pub struct Multigrid {
     levels: Vec<Level>,
     coarse: Coarse,
+    frame: Frame,
     params: MultigridParams,
     info: HierarchyInfo,
 }
@@ -74,16 +82,26 @@ impl Multigrid {
         let mut multigrid = Self {
             levels: Vec::new(),
             coarse: Coarse::trivial()?,
+            frame: Frame::new(&matrix, params)?,
             params: *params,
             info: HierarchyInfo::default(),
         };
+        let weights = multigrid.frame.weights(weights);
+        let matrix = multigrid.frame.matrix(matrix)?;
         multigrid.info.levels.push((matrix.nrows(), matrix.nnz()));
+        multigrid.info.bytes = multigrid.frame.bytes();
         let mut a = matrix;
-        let mut sums = galerkin::row_sums(&a);
+        let mut sums = galerkin::row_sums(&a, multigrid.frame.units());
         let mut kept = kept::rows(&a, params.keep);
         while a.nrows() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
-            let weights = weights.filter(|_| multigrid.levels.is_empty());
-            let Some((p, r)) = transfers(&a, weights, &mut kept, params)? else { break };
+            let weights = weights.as_deref().filter(|_| multigrid.levels.is_empty());
+            let transfers = match multigrid.units() {
+                None => transfers(&a, weights, &mut kept, params)?,
+                Some(units) => transfers(&a.columns_scaled(units)?, weights, &mut kept, params)?
+                    .map(|(p, r)| p.row_scaled(units).map(|p| (p, r)))
+                    .transpose()?,
+            };
+            let Some((p, r)) = transfers else { break };
             (a, sums) = multigrid.add_level(a, &sums, p, r)?;
         }
         multigrid.coarse = Coarse::new(&a, &sums, params.coarsest)?;
@@ -99,15 +117,21 @@ impl Multigrid {
         matrix.require_square()?;
         let n = self.info.levels.first().map_or(0, |l| l.0);
         MatrixError::check_length("rows of the matrix", matrix.nrows(), n)?;
+        let matrix = self.frame.matrix(matrix)?;
         let old = std::mem::take(&mut self.levels);
-        self.info = HierarchyInfo { levels: vec![(matrix.nrows(), matrix.nnz())], bytes: 0 };
+        self.info = HierarchyInfo { levels: vec![(matrix.nrows(), matrix.nnz())], bytes: self.frame.bytes() };
         let mut a = matrix;
-        let mut sums = galerkin::row_sums(&a);
+        let mut sums = galerkin::row_sums(&a, self.frame.units());
         for level in old {
             (a, sums) = self.add_level(a, &sums, level.p, level.r)?;
         }
         self.coarse = Coarse::new(&a, &sums, self.params.coarsest)?;
         Ok(())
+    }
+
+    /// What ones on the next level are on the one that is at hand, where that is not ones.
+    fn units(&self) -> Option<&[f64]> {
+        self.frame.units().filter(|_| self.levels.is_empty())
     }
 
     fn add_level(
@@ -117,7 +141,7 @@ impl Multigrid {
         p: Csr,
         r: Csr,
     ) -> Result<(Arc<Csr>, Vec<f64>), SolveError> {
-        let (coarse, sums) = galerkin::product(&a, sums, &p, &r);
+        let (coarse, sums) = galerkin::product(&a, sums, self.units(), &p, &r);
         coarse.require_finite()?;
         let smoother = Smoother::new(self.params.smoother, &a)?;
         self.info.levels.push((coarse.nrows(), coarse.nnz()));
@@ -155,13 +179,19 @@ fn transfers(
             if !worth(aggregates.count) {
                 return Ok(None);
             }
-            let p = prolongation::smoothed(a, &graph, &aggregates);
-            if params.restriction == Restriction::Own {
-                let balances = match weights {
-                    Some(weights) => a.row_scaled(weights)?,
-                    None => a.clone(),
-                };
-                let left = prolongation::smoothed(&balances.transpose(), &graph, &aggregates);
+            let smoothed = |a: &Csr| match params.prolongation {
+                ProlongationKind::Jacobi => Ok(prolongation::smoothed(a, &graph, &aggregates)),
+                ProlongationKind::EnergyMinimizing => energy::minimized(a, &graph, &aggregates),
+            };
+            let own = params.restriction == Restriction::Own;
+            let balanced = own || params.prolongation == ProlongationKind::EnergyMinimizing;
+            let balances = match weights.filter(|_| balanced) {
+                Some(weights) => Cow::Owned(a.row_scaled(weights)?),
+                None => Cow::Borrowed(a),
+            };
+            let p = smoothed(&balances)?;
+            if own {
+                let left = smoothed(&balances.transpose())?;
                 return Ok(Some((p, restriction(&left, weights))));
             }
             p
@@ -201,11 +231,11 @@ impl Preconditioner for Multigrid {
     }
 
     fn apply(&self, r: &[f64], z: &mut [f64], scratch: &mut [f64]) {
-        self.cycle(0, r, z, scratch);
+        self.frame.within(r, z, scratch, |r, z, scratch| self.cycle(0, r, z, scratch));
     }
 
     fn scratch_len(&self) -> usize {
-        self.scratch_from(0)
+        self.frame.scratch_len() + self.scratch_from(0)
     }
 
     fn is_linear(&self) -> bool {

@@ -63,6 +63,29 @@ pub enum Coarsening {
     RugeStuebenExtended,
 }
 
+/// How prolongation is made from aggregates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ProlongationKind {
+    /// One damped Jacobi step.
+    #[default]
+    Jacobi,
+    /// That, and a few steps of a Krylov method that reduce the energy of its columns on the same pattern (Olson, Schroder and
+    /// Tuminaro, SIAM J. Sci. Comput. 33, 2011).
+    EnergyMinimizing,
+}
+
+/// What prolongation reproduces exactly: the error that a smoother reduces least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Candidate {
+    /// The constant. Aggregates do not cross weak bonds, so at a high contrast it is one constant for each region.
+    Constant,
+    /// What a few sweeps of Gauss-Seidel leave of it: it falls off towards what holds the solution.
+    #[default]
+    Relaxed,
+}
+
 /// How residuals come to the coarse level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -70,7 +93,7 @@ pub enum Restriction {
     /// By the transpose of the prolongation.
     #[default]
     Transpose,
-    /// By a restriction that is smoothed with the transpose of the matrix (Sala and Tuminaro, SIAM J. Sci. Comput. 31,
+    /// By a restriction that is smoothed, or minimised, with the transpose of the matrix (Sala and Tuminaro, SIAM J. Sci. Comput. 31,
     /// 2008); for smoothed aggregation.
     Own,
 }
@@ -90,11 +113,17 @@ pub struct MultigridParams {
     pub strength: StrengthKind,
     /// A bond is strong from this part of the strongest of its nodes on; between 0 and 1.
     pub threshold: f64,
+    /// How prolongation is made from aggregates that are smoothed.
+    pub prolongation: ProlongationKind,
+    /// What prolongation reproduces exactly.
+    pub candidate: Candidate,
     /// How residuals come to the coarse level.
     pub restriction: Restriction,
     /// Rows whose other entries add up to more than this many diagonals keep an unknown of their own on every level, where they
     /// are few; at least 1, infinity for none. Sums over such rows make coarse rows that no smoother copes with.
     pub keep: f64,
+    /// Whether unknowns in an order without any sense are renumbered: aggregates and sweeps follow the order.
+    pub renumber: bool,
     /// Unknowns up to which a level is solved directly, at least 1.
     pub coarsest: usize,
 }
@@ -108,8 +137,11 @@ impl Default for MultigridParams {
             coarsening: Coarsening::SmoothedAggregation,
             strength: StrengthKind::Symmetric,
             threshold: 0.25,
+            prolongation: ProlongationKind::Jacobi,
+            candidate: Candidate::Relaxed,
             restriction: Restriction::Transpose,
             keep: f64::INFINITY,
+            renumber: true,
             coarsest: 400,
         }
     }

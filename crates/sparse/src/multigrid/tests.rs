@@ -28,7 +28,7 @@ fn levels(a: &Csr) -> (strength::Graph, Csr, Csr, Vec<f64>) {
     let graph = strength::symmetric(a, 0.25);
     let aggregates = aggregation::standard(a, &graph);
     let p = prolongation::smoothed(a, &graph, &aggregates);
-    (graph, p.clone(), restriction(&p, None), galerkin::row_sums(a))
+    (graph, p.clone(), restriction(&p, None), galerkin::row_sums(a, None))
 }
 
 proptest! {
@@ -45,7 +45,7 @@ proptest! {
             let sum: f64 = p.row(i).1.iter().sum();
             prop_assert!((sum - 1.0).abs() < 1e-14 || (graph.settled[i] && p.row(i).0.is_empty()));
         }
-        let (coarse, coarse_sums) = galerkin::product(&a, &sums, &p, &r);
+        let (coarse, coarse_sums) = galerkin::product(&a, &sums, None, &p, &r);
         let reference = r.multiply(&a).unwrap().multiply(&p).unwrap();
         let size = |m: &Csr, i: usize| m.row(i).1.iter().map(|v| v.abs()).sum::<f64>();
         for i in 0..coarse.nrows() {
@@ -58,6 +58,49 @@ proptest! {
             let sum: f64 = coarse.row(i).1.iter().sum();
             prop_assert!((sum - coarse_sums[i]).abs() <= room);
         }
+    }
+
+    #[test]
+    fn minimised_prolongation_has_less_energy_and_the_same_sums(
+        bonds in prop::collection::vec((0usize..7, -1.0..1.0, -1.0..1.0), 300..500),
+        symmetric: bool,
+    ) {
+        let a = m_matrix(150, &bonds, symmetric).to_csr();
+        let graph = strength::symmetric(&a, 0.25);
+        let aggregates = aggregation::standard(&a, &graph);
+        let jacobi = prolongation::smoothed(&a, &graph, &aggregates);
+        let p = energy::minimized(&a, &graph, &aggregates).unwrap();
+        prop_assert_eq!((p.offsets(), p.indices()), (jacobi.offsets(), jacobi.indices()));
+        for i in 0..a.nrows() {
+            let (sum, before): (f64, f64) = (p.row(i).1.iter().sum(), jacobi.row(i).1.iter().sum());
+            prop_assert!((sum - before).abs() < 1e-13);
+        }
+        if symmetric {
+            let energy = |p: &Csr| {
+                let coarse = p.transpose().multiply(&a.multiply(p).unwrap()).unwrap();
+                coarse.diagonal().iter().sum::<f64>()
+            };
+            prop_assert!(energy(&p) <= energy(&jacobi) * (1.0 + 1e-12), "{} {}", energy(&p), energy(&jacobi));
+        }
+    }
+
+    #[test]
+    fn aggregates_of_blocks_are_neighbourhoods_that_do_not_overlap(
+        bonds in prop::collection::vec((0usize..7, -3.0..3.0, -3.0..3.0), 200..400),
+        block in 5usize..150,
+    ) {
+        let a = m_matrix(100, &bonds, false).to_csr();
+        let graph = strength::symmetric(&a, 0.25);
+        let (of, count) = aggregation::founded(&graph, block);
+        let mut founders = vec![0; count as usize];
+        for i in 0..100 {
+            let whole = graph.neighbors(i).iter().all(|&j| of[j as usize] == of[i] && j as usize / block == i / block);
+            let size = of.iter().filter(|&&k| k == of[i]).count();
+            if of[i] != aggregation::NONE && whole && size == 1 + graph.neighbors(i).len() {
+                founders[of[i] as usize] += 1;
+            }
+        }
+        prop_assert!(founders.iter().all(|&n| n > 0));
     }
 
     #[test]
@@ -98,7 +141,7 @@ fn a_weak_bond_survives_on_the_coarse_level() {
     let a = rows.to_csr();
     let (_, p, r, _) = levels(&a);
     let sums: Vec<f64> = (0..n).map(|i| rows.row_sum(i)).collect();
-    let (coarse, sums) = galerkin::product(&a, &sums, &p, &r);
+    let (coarse, sums) = galerkin::product(&a, &sums, None, &p, &r);
     assert_eq!(sums.iter().sum::<f64>(), 1.0);
     // The rows of the second half add up to what ties it to the first.
     let half = coarse.nrows() / 2;
@@ -107,4 +150,60 @@ fn a_weak_bond_survives_on_the_coarse_level() {
         .map(|(i, j)| coarse.get(i, j))
         .sum();
     assert!((tie + 1.0).abs() < 1e-12, "{tie}");
+}
+
+/// The five-point formula on a square of `m` by `m` nodes, with a stiff disc in it.
+fn disc(m: usize, contrast: f64) -> (Csr, Vec<f64>) {
+    let inside = |i: usize| (i % m).abs_diff(m / 2).pow(2) + (i / m).abs_diff(m / 2).pow(2) < (m / 4).pow(2);
+    let eta = |i: usize| if inside(i) { contrast } else { 1.0 };
+    let rows = DifferenceMatrix::from_rows(m * m, |i, row| {
+        for (k, stride) in [(i % m, 1), (i / m, m)] {
+            for other in [(k > 0).then(|| i - stride), (k + 1 < m).then(|| i + stride)] {
+                match other {
+                    Some(j) => row.push(j, -2.0 * eta(i) * eta(j) / (eta(i) + eta(j))),
+                    None => row.add_to_row_sum(2.0 * eta(i)),
+                }
+            }
+        }
+    });
+    let indicator = (0..m * m).map(|i| f64::from(u8::from(inside(i)))).collect();
+    (rows.expect("entries are in range").to_csr(), indicator)
+}
+
+#[test]
+fn at_a_high_contrast_the_constant_of_every_region_is_reproduced() {
+    let (a, indicator) = disc(40, 1e4);
+    let graph = strength::symmetric(&a, 0.25);
+    let aggregates = aggregation::standard(&a, &graph);
+    for p in
+        [prolongation::smoothed(&a, &graph, &aggregates), energy::minimized(&a, &graph, &aggregates).unwrap()]
+    {
+        let mut coarse = vec![0.0; aggregates.count];
+        (0..a.nrows()).for_each(|i| coarse[aggregates.of[i] as usize] = indicator[i]);
+        let mut fine = vec![0.0; a.nrows()];
+        p.mul_vec(&coarse, &mut fine);
+        assert!(fine.iter().zip(&indicator).all(|(f, i)| (f - i).abs() < 1e-13));
+    }
+}
+
+#[test]
+fn a_numbering_is_found_where_there_was_none() {
+    let (a, _) = disc(30, 10.0);
+    assert!(numbering::found(&a).is_none(), "rows of a grid are an order");
+    let n = a.nrows();
+    let shuffle: Vec<u32> = (0..n).map(|k| (k * 367 % n) as u32).collect();
+    let shuffled = a.permuted(&shuffle).unwrap();
+    let order = numbering::found(&shuffled).expect("a grid has an order");
+    let again = shuffled.permuted(&order).unwrap();
+    let widest = |a: &Csr| {
+        let far = |i: usize| a.row(i).0.iter().map(move |&j| (j as usize).abs_diff(i)).max();
+        (0..n).filter_map(far).max()
+    };
+    assert!(widest(&again) <= Some(45), "{:?}", widest(&again));
+    // Everybody knows somebody far away.
+    let random = Csr::from_rows(n, n, |i, row| {
+        row.push(i, 10.0);
+        (1..8).for_each(|k| row.push((i * i * 7 + k * 131 * (i + k)) % n, -1.0));
+    });
+    assert!(numbering::found(&random.unwrap()).is_none());
 }

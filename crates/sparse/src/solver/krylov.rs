@@ -3,6 +3,7 @@
 use super::bicgstab::bicgstab_cycle;
 use super::cg::cg_cycle;
 use super::gmres::gmres_cycle;
+use super::idr::idr_cycle;
 use super::{Criterion, SolveError, SolveInfo, SolverParams};
 use crate::csr::Csr;
 use crate::precond::Preconditioner;
@@ -75,6 +76,7 @@ impl Residuals for Csr {
 pub(crate) enum Method {
     BiCgStab { l: usize },
     Gmres { restart: usize },
+    Idr { s: usize },
     Cg,
 }
 
@@ -83,6 +85,7 @@ impl Method {
         match self {
             Self::BiCgStab { l } => format!("BiCGStab({l})"),
             Self::Gmres { restart } => format!("GMRES({restart})"),
+            Self::Idr { s } => format!("IDR({s})"),
             Self::Cg => "CG".to_owned(),
         }
     }
@@ -172,6 +175,7 @@ pub(crate) fn iterate(
         let end = match method {
             Method::BiCgStab { l } => bicgstab_cycle(&mut cycle, l, &mut residual, &mut correction),
             Method::Gmres { restart } => gmres_cycle(&mut cycle, restart, &mut residual, &mut correction),
+            Method::Idr { s } => idr_cycle(&mut cycle, s, &mut residual, &mut correction),
             Method::Cg => cg_cycle(&mut cycle, &mut residual, &mut correction),
         };
         run.products += cycle.products;

@@ -6,15 +6,18 @@ mod chain;
 mod direct;
 mod error;
 mod gmres;
+mod idr;
 mod krylov;
 mod prepared;
 mod scaling;
 
+pub(crate) use cg::cg_cycle;
 pub(crate) use chain::PATIENCE;
 pub(crate) use direct::Factors;
 pub use error::SolveError;
+pub(crate) use gmres::gmres_cycle;
 pub use krylov::LinearOperator;
-pub(crate) use krylov::{Method, NEAR, ROUND_OFF, Residuals, iterate};
+pub(crate) use krylov::{Cycle, Method, NEAR, ROUND_OFF, Residuals, iterate};
 pub(crate) use prepared::Levels;
 pub use prepared::{Prepared, solve};
 pub(crate) use scaling::{Scaled, reciprocal_power};
@@ -55,6 +58,12 @@ pub enum SolverKind {
     Gmres {
         /// Vectors kept before a restart.
         restart: usize,
+    },
+    /// IDR(s), van Gijzen and Sonneveld, ACM Trans. Math. Softw. 38 (2011): short recurrences, `s + 1` products in a cycle, for
+    /// any matrix. `s` is 1 to 16; larger ones come nearer to GMRES and keep `3 s` vectors.
+    Idr {
+        /// Dimension of the shadow space.
+        s: usize,
     },
     /// Conjugate gradients, for symmetric positive definite matrices only.
     Cg,

@@ -59,6 +59,7 @@ impl Prepared {
             SolverKind::Direct => None,
             SolverKind::BiCgStab { l } => Some(Method::BiCgStab { l }),
             SolverKind::Gmres { restart } => Some(Method::Gmres { restart }),
+            SolverKind::Idr { s } => Some(Method::Idr { s }),
             SolverKind::Cg => Some(Method::Cg),
         };
         let Some(method) = method else {
@@ -185,6 +186,7 @@ fn not_flexible(method: Method) -> SolveError {
         value: 2.0,
         expected: match method {
             Method::Cg => "conjugate gradients need a linear preconditioner: take the V or W cycle, or GMRES",
+            Method::Idr { .. } => "IDR(s) needs a linear preconditioner: take the V or W cycle, or GMRES",
             _ => "BiCGStab(l) needs a linear preconditioner: take the V or W cycle, or GMRES",
         },
     }
@@ -213,6 +215,9 @@ fn check(params: &SolverParams) -> Result<(), SolveError> {
     match params.kind {
         SolverKind::BiCgStab { l } if !(1..=8).contains(&l) => {
             return bad("the degree l of BiCGStab(l)", l as f64, "it must lie between 1 and 8");
+        }
+        SolverKind::Idr { s } if !(1..=16).contains(&s) => {
+            return bad("the shadow space of IDR(s)", s as f64, "its dimension must lie between 1 and 16");
         }
         SolverKind::Gmres { restart: 0 } => {
             return bad("the restart length of GMRES", 0.0, "it must be at least 1");

@@ -79,9 +79,11 @@ fn figures(
     };
     let (complexity, levels) =
         prepared.hierarchy().map_or((f64::NAN, 0), |h| (h.operator_complexity(), h.bytes));
-    // The scaled matrix, the levels, and the vectors of GMRES.
-    let matrix = system.matrix().off_diagonal().bytes() + 12 * system.n();
-    let bytes = matrix + levels + 8 * (iterations.min(AUTO_RESTART) + 6) * system.n();
+    // The rows in difference form with their sums, right-hand side and scales; the scaled matrix; the levels; and the vectors of
+    // GMRES, two for an iteration where it is flexible.
+    let rows = system.matrix().off_diagonal().bytes();
+    let vectors = iterations.min(AUTO_RESTART) * if system.extra() > 0 { 2 } else { 1 } + 6;
+    let bytes = 2 * rows + 36 * system.n() + levels + 8 * vectors * system.n();
     Ok(vec![
         format!("{n}"),
         format!("{contrast:.0e}"),

@@ -1,0 +1,124 @@
+//! A bordered system solved as one: GMRES on all equations, preconditioned by multigrid in nodal values.
+//!
+//! The unknowns are those of [`coupled`](super::coupled), `s w` and, at the pinned nodes, the constants. Multigrid knows neither: it
+//! is set up for the matrix as it acts on u, in which a stiff region keeps its weak bonds on every level, and its answer is taken
+//! apart afterwards. So no node is pinned on coarse levels, no response has to be solved for, and nothing large multiplies what is
+//! rounded: products and residuals are formed in `s w` and constants. What is rounded is the answer of the preconditioner, by
+//! `1e-16 / s` of it; GMRES is flexible for that reason.
+
+use super::bordered::Bordered;
+use super::joined::{Equations, take_extra};
+use super::split::Split;
+use crate::csr::Csr;
+use crate::error::MatrixError;
+use crate::multigrid::Multigrid;
+use crate::precond::Preconditioner;
+use crate::solver::{AUTO_RESTART, Levels, LinearOperator, Method, PATIENCE, Residuals, iterate};
+use crate::solver::{SolveError, SolveInfo, SolverParams};
+
+/// The smallest scale for which rounding leaves the preconditioner three digits.
+const LEAST_SCALE: f64 = 1e-13;
+
+const METHOD: Method = Method::Gmres { restart: AUTO_RESTART };
+
+/// The split by which nodal values are taken apart, if the system has one and it is for this solver.
+pub(super) fn split(system: &Bordered) -> Option<&Split> {
+    system.split().filter(|_| system.scales().iter().all(|&s| s >= LEAST_SCALE))
+}
+
+/// The matrix as it acts on u: entries in `s w` and in u are the same, as both are columns divided by `s`.
+///
+/// # Errors
+/// [`MatrixError::NotFinite`] where an entry overflows.
+pub(super) fn matrix(system: &Bordered) -> Result<Csr, MatrixError> {
+    let inverse: Vec<f64> = (0..system.n()).map(|i| system.inverse_scale(i)).collect();
+    system.matrix().to_csr().columns_scaled(&inverse)
+}
+
+/// `w` and `c` for a right-hand side.
+///
+/// # Errors
+/// [`SolveError::NoConvergence`] where the iteration stagnates.
+pub(super) fn solve(
+    system: &Bordered,
+    split: &Split,
+    levels: &Levels<'_>,
+    rhs: &[f64],
+    params: &SolverParams,
+) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
+    let operator = Operator { system, levels };
+    let preconditioner = Apart { split, multigrid: levels.multigrid };
+    let b: Vec<f64> = rhs.iter().zip(levels.factors).map(|(b, f)| b * f).collect();
+    let patient = SolverParams { max_iterations: params.max_iterations.min(PATIENCE), ..*params };
+    let (mut x, info) = iterate(METHOD, &operator, &preconditioner, &b, &patient)?;
+    let extra = take_extra(system, &mut x);
+    system.unscale(&mut x);
+    Ok((x, extra, info))
+}
+
+/// All equations, their rows scaled.
+struct Operator<'a> {
+    system: &'a Bordered,
+    levels: &'a Levels<'a>,
+}
+
+impl LinearOperator for Operator<'_> {
+    fn dim(&self) -> usize {
+        self.system.n()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        // The constants stand where `s w` is zero.
+        let mut own = x.to_vec();
+        let extra = take_extra(self.system, &mut own);
+        self.levels.matrix.mul_vec(&own, y);
+        for (c, column) in extra.iter().zip(self.system.columns()) {
+            for &(i, v) in column {
+                y[i as usize] += self.levels.factors[i as usize] * v * c;
+            }
+        }
+    }
+}
+
+impl Operator<'_> {
+    fn equations(&self) -> Equations<'_> {
+        Equations { system: self.system, factors: self.levels.factors, scaled: true }
+    }
+}
+
+impl Residuals for Operator<'_> {
+    fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
+        self.equations().residual(x, b, r);
+    }
+
+    fn backward_error(&self, x: &[f64], b: &[f64]) -> f64 {
+        self.equations().backward_error(x, b)
+    }
+}
+
+/// Multigrid, with what it answers taken apart.
+#[derive(Debug)]
+struct Apart<'a> {
+    split: &'a Split,
+    multigrid: &'a Multigrid,
+}
+
+impl Preconditioner for Apart<'_> {
+    fn name(&self) -> String {
+        self.multigrid.name()
+    }
+
+    fn apply(&self, r: &[f64], z: &mut [f64], scratch: &mut [f64]) {
+        self.multigrid.apply(r, z, scratch);
+        let constants = self.split.take_constants(z);
+        self.split.pinned().iter().zip(constants).for_each(|(&p, c)| z[p as usize] = c);
+    }
+
+    fn scratch_len(&self) -> usize {
+        self.multigrid.scratch_len()
+    }
+
+    fn is_linear(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,27 @@
+//! What relaxation leaves of the constant: the field that prolongation reproduces.
+
+use super::SmootherKind;
+use super::smoother::Smoother;
+use crate::csr::Csr;
+use crate::error::MatrixError;
+
+/// Sweeps of Gauss-Seidel for `A c = 0` from `c = 1`.
+const SWEEPS: usize = 4;
+
+/// What is left must be a unit to measure unknowns in.
+const LEAST: f64 = 0.1;
+
+/// Values are rounded to multiples of one over this: where relaxation leaves the constant as it is, as in a stiff region that
+/// weak bonds hold, differences are exactly zero, and no large entry multiplies their rounding.
+const STEPS: f64 = 1024.0;
+
+/// The constant after a few sweeps of Gauss-Seidel for `A c = 0`, kept between [`LEAST`] and 1.
+pub(crate) fn relaxed(a: &Csr) -> Result<Vec<f64>, MatrixError> {
+    let n = a.nrows();
+    let smoother = Smoother::new(SmootherKind::GaussSeidel, a)?;
+    let (zero, mut c, mut t) = (vec![0.0; n], vec![1.0; n], vec![0.0; n]);
+    (0..SWEEPS).for_each(|_| smoother.before(a, &zero, &mut c, &mut t));
+    let unit = |c: f64| if c.is_nan() { 1.0 } else { ((c * STEPS).round() / STEPS).clamp(LEAST, 1.0) };
+    c.iter_mut().for_each(|c| *c = unit(*c));
+    Ok(c)
+}
