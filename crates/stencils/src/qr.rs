@@ -210,6 +210,17 @@ impl Qr {
     /// Solves `R (P^T x) = y` with the rows within the rank; the entries beyond the rank are zero.
     pub fn back_substitute(&self, y: &[f64], x: &mut [f64]) {
         x.fill(0.0);
+        if self.pivots.iter().enumerate().all(|(k, &pivot)| k == pivot) {
+            // By columns, which lie in a row in memory.
+            x[..self.rank].copy_from_slice(&y[..self.rank]);
+            for k in (0..self.rank).rev() {
+                x[k] /= self.diagonal[k];
+                let (before, own) = x.split_at_mut(k);
+                let column = &self.a[k * self.rows..k * self.rows + k];
+                before.iter_mut().zip(column).for_each(|(x, r)| *x -= r * own[0]);
+            }
+            return;
+        }
         for k in (0..self.rank).rev() {
             let later = (k + 1..self.rank).map(|j| self.a[j * self.rows + k] * x[self.pivots[j]]);
             x[self.pivots[k]] = (y[k] - later.sum::<f64>()) / self.diagonal[k];

@@ -8,6 +8,7 @@
 use meshless_stencils::Qr;
 
 use super::basis::{Basis, Jet};
+use super::dense::{self, dot};
 use super::particular::{inverse_laplacian, pseudo_inverse, samples};
 
 /// Condition of the system beyond which the diffusivity varies too much over a stencil for its functions to be found.
@@ -29,8 +30,10 @@ pub(super) struct Adapted<const D: usize> {
     fit: Vec<f64>,
     /// A row a monomial of P: its coefficient for monomials of y.
     inverse: Vec<f64>,
-    /// A row a sample: the polynomial, one degree higher than y, through samples of `ln eta`, and its derivatives.
+    /// A row a monomial: its coefficient in the polynomial, one degree higher than y, through samples of `ln eta`.
     logarithm: Vec<f64>,
+    /// A row a sample: the monomials of this polynomial, and their derivatives.
+    values: Vec<f64>,
     slopes: [Vec<f64>; D],
     /// A row a sample: derivatives of P for the monomials of y, then those of the harmonic polynomials.
     derivatives: [Vec<f64>; D],
@@ -40,14 +43,17 @@ pub(super) struct Adapted<const D: usize> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scratch {
     qr: Qr,
-    /// `ln eta` at the samples, and one component of its gradient there.
+    /// `ln eta` at the samples, the polynomial through them, and one component of its gradient there.
     logarithm: Vec<f64>,
+    polynomial: Vec<f64>,
     slope: Vec<f64>,
     /// `b . grad` of everything at the samples, and its coefficients.
     convected: Vec<f64>,
     fitted: Vec<f64>,
     right: Vec<f64>,
+    solved: Vec<f64>,
     y: Vec<f64>,
+    lacks: Vec<f64>,
 }
 
 impl<const D: usize> Adapted<D> {
@@ -71,13 +77,16 @@ impl<const D: usize> Adapted<D> {
                 row[count..].iter_mut().zip(&harmonics.gradients).for_each(|(entry, g)| *entry = g[axis]);
             }
         }
-        let (logarithm, slopes) = differentiation(degree + 1, &samples);
+        let through = Basis::complete(degree + 1);
+        let logarithm = pseudo_inverse(&through, &samples);
+        let (values, slopes) = tables(&through, &samples);
         let fit = pseudo_inverse(&right, &samples);
-        Self { basis, functions, fit, inverse, logarithm, slopes, derivatives, samples }
+        Self { basis, functions, fit, inverse, logarithm, values, slopes, derivatives, samples }
     }
 
-    /// The functions of a stencil with these diffusivities at the samples, and the particular parts of `sources` there:
-    /// one after the other the coefficients of their P. False where the diffusivity is no smooth positive function.
+    /// The functions of a stencil with these diffusivities at the samples, and the particular parts of `sources` there: a row a
+    /// monomial of P with its coefficient in each function, then one after the other the coefficients for the sources. False where the
+    /// diffusivity is no smooth positive function.
     pub(super) fn solve(
         &self,
         eta: &[f64],
@@ -90,8 +99,8 @@ impl<const D: usize> Adapted<D> {
         }
         let (n, width) = (self.samples.len(), self.functions + self.fit.len() / self.samples.len());
         let count = width - self.functions;
-        let Scratch { qr, convected, fitted, right, y, .. } = scratch;
-        multiply(&self.fit, convected, n, width, fitted);
+        let Scratch { qr, convected, fitted, right, solved, y, lacks, .. } = scratch;
+        dense::multiply(&self.fit, convected, n, width, fitted);
         qr.resize(count, count);
         for column in 0..count {
             let entries = qr.column_mut(column);
@@ -101,17 +110,24 @@ impl<const D: usize> Adapted<D> {
         if !qr.factor(1.0 / LARGEST_CONDITION) {
             return false;
         }
-        out.clear();
+        // A row a monomial of y, a column a function.
+        solved.resize(count * self.functions, 0.0);
         y.resize(count, 0.0);
-        for function in 0..self.functions + sources.len() {
+        for function in 0..self.functions {
             right.clear();
-            match function.checked_sub(self.functions) {
-                None => right.extend(fitted.chunks_exact(width).map(|row| -row[count + function])),
-                Some(source) => right.extend(self.fit.chunks_exact(n).map(|row| dot(row, sources[source]))),
-            }
+            right.extend(fitted.chunks_exact(width).map(|row| -row[count + function]));
             qr.apply_transpose(right);
             qr.back_substitute(right, y);
-            out.extend(self.inverse.chunks_exact(count).map(|row| dot(row, y)));
+            let column = solved.iter_mut().skip(function).step_by(self.functions);
+            column.zip(y.iter()).for_each(|(entry, y)| *entry = *y);
+        }
+        dense::multiply(&self.inverse, solved, count, self.functions, out);
+        for source in sources {
+            dense::apply(&self.fit, source, right);
+            qr.apply_transpose(right);
+            qr.back_substitute(right, y);
+            dense::apply(&self.inverse, y, lacks);
+            out.extend_from_slice(lacks);
         }
         true
     }
@@ -119,19 +135,20 @@ impl<const D: usize> Adapted<D> {
     /// `b . grad` of P for each monomial of y and of each harmonic polynomial, at the samples.
     fn convect(&self, eta: &[f64], scratch: &mut Scratch) -> bool {
         let n = self.samples.len();
-        let Scratch { logarithm, slope, convected, .. } = scratch;
+        let Scratch { logarithm, polynomial, slope, convected, .. } = scratch;
         logarithm.clear();
         logarithm.extend(eta.iter().map(|e| (e / eta[0]).ln()));
-        let misfit = |(row, value): (&[f64], &f64)| (dot(row, logarithm) - value).abs();
-        if self.logarithm.chunks_exact(n).zip(logarithm.iter()).map(misfit).any(|m| m > LARGEST_MISFIT) {
+        dense::apply(&self.logarithm, logarithm, polynomial);
+        let misfit = |(row, value): (&[f64], &f64)| (dot(row, polynomial) - value).abs();
+        let rows = self.values.chunks_exact(polynomial.len()).zip(logarithm.iter());
+        if rows.map(misfit).any(|m| m > LARGEST_MISFIT) {
             return false;
         }
         convected.clear();
         convected.resize(self.derivatives[0].len(), 0.0);
         let width = convected.len() / n;
         for (slopes, derivatives) in self.slopes.iter().zip(&self.derivatives) {
-            slope.clear();
-            slope.extend(slopes.chunks_exact(n).map(|row| dot(row, logarithm)));
+            dense::apply(slopes, polynomial, slope);
             let rows = convected.chunks_exact_mut(width).zip(derivatives.chunks_exact(width));
             for ((row, derivative), slope) in rows.zip(slope.iter()) {
                 row.iter_mut().zip(derivative).for_each(|(entry, d)| *entry += slope * d);
@@ -141,40 +158,19 @@ impl<const D: usize> Adapted<D> {
     }
 }
 
-/// A row a sample: value and derivatives there of the least-squares polynomial through samples.
-fn differentiation<const D: usize>(degree: usize, samples: &[[f64; D]]) -> (Vec<f64>, [Vec<f64>; D]) {
-    let basis = Basis::complete(degree);
-    let (n, fit) = (samples.len(), pseudo_inverse(&basis, samples));
-    let mut values = vec![0.0; n * n];
-    let mut slopes: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; n * n]);
+/// A row a sample: values and derivatives of the polynomials there.
+fn tables<const D: usize>(basis: &Basis<D>, samples: &[[f64; D]]) -> (Vec<f64>, [Vec<f64>; D]) {
+    let mut values = Vec::new();
+    let mut slopes: [Vec<f64>; D] = std::array::from_fn(|_| Vec::new());
     let mut jet = Jet::default();
-    for (k, z) in samples.iter().enumerate() {
+    for z in samples {
         basis.evaluate(z, &mut jet);
-        for (m, factors) in fit.chunks_exact(n).enumerate() {
-            let add = |table: &mut [f64], value: f64| {
-                let row = &mut table[k * n..(k + 1) * n];
-                row.iter_mut().zip(factors).for_each(|(entry, factor)| *entry += value * factor);
-            };
-            add(&mut values, jet.values[m]);
-            slopes.iter_mut().zip(jet.gradients[m]).for_each(|(table, g)| add(table, g));
+        values.extend_from_slice(&jet.values);
+        for (axis, table) in slopes.iter_mut().enumerate() {
+            table.extend(jet.gradients.iter().map(|g| g[axis]));
         }
     }
     (values, slopes)
-}
-
-/// The product of two matrices in rows, of `inner` and `width` columns.
-fn multiply(a: &[f64], b: &[f64], inner: usize, width: usize, out: &mut Vec<f64>) {
-    out.clear();
-    out.resize(a.len() / inner * width, 0.0);
-    for (row, factors) in out.chunks_exact_mut(width).zip(a.chunks_exact(inner)) {
-        for (factor, other) in factors.iter().zip(b.chunks_exact(width)) {
-            row.iter_mut().zip(other).for_each(|(entry, value)| *entry += factor * value);
-        }
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -194,7 +190,11 @@ mod tests {
         harmonic.evaluate(&z, &mut own);
         adapted.basis.evaluate(&z, &mut jet);
         let mut worst = 0.0_f64;
-        for (function, p) in coefficients.chunks_exact(adapted.basis.len()).enumerate() {
+        let (functions, source) = coefficients.split_at(adapted.basis.len() * harmonic.len());
+        let of_function = |f: usize| functions.iter().copied().skip(f).step_by(harmonic.len()).collect();
+        let all = (0..harmonic.len()).map(of_function).chain([source.to_vec()]);
+        for (function, p) in all.enumerate() {
+            let p: Vec<f64> = p;
             // Values and slopes at the centre are those of the harmonic polynomial.
             assert!(p[..=D].iter().all(|c| c.abs() < 1e-14), "{:?}", &p[..=D]);
             let mut left = if function < harmonic.len() { 0.0 } else { z[0] - 1.0 };

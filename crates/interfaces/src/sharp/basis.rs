@@ -62,6 +62,22 @@ impl<const D: usize> Basis<D> {
             }
         }
     }
+
+    /// Writes values, and slopes of harmonic polynomials, at z: what rows of values need.
+    pub(super) fn evaluate_values(&self, z: &[f64; D], jet: &mut Jet<D>) {
+        let Self::Complete { degree, exponents } = self else { return self.evaluate(z, jet) };
+        jet.values.clear();
+        let mut powers = [[1.0; POWERS]; D];
+        for (table, &x) in powers.iter_mut().zip(z) {
+            for e in 1..=*degree {
+                table[e] = table[e - 1] * x;
+            }
+        }
+        let value = |exponents: &[u8; D]| {
+            powers.iter().zip(exponents).map(|(table, &e)| table[e as usize]).product::<f64>()
+        };
+        jet.values.extend(exponents.iter().map(value));
+    }
 }
 
 fn evaluate_monomials<const D: usize>(degree: usize, exponents: &[[u8; D]], z: &[f64; D], jet: &mut Jet<D>) {

@@ -7,6 +7,7 @@
 
 mod adapted;
 mod basis;
+mod dense;
 mod fit;
 mod harmonic;
 mod interface;

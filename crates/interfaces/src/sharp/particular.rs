@@ -3,6 +3,7 @@
 use meshless_stencils::Qr;
 
 use super::basis::{Basis, Jet};
+use super::dense;
 
 /// Samples of the source for each coefficient of the polynomial that it is fitted by.
 const SAMPLES_PER_COEFFICIENT: usize = 3;
@@ -41,12 +42,7 @@ impl<const D: usize> Particular<D> {
 
     /// The coefficients of P for samples of the right-hand side.
     pub(super) fn solve(&self, values: &[f64], out: &mut Vec<f64>) {
-        out.clear();
-        out.extend(
-            self.matrix
-                .chunks_exact(self.samples.len())
-                .map(|row| row.iter().zip(values).map(|(a, f)| a * f).sum::<f64>()),
-        );
+        dense::apply(&self.matrix, values, out);
     }
 }
 

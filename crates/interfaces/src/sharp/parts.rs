@@ -1,7 +1,8 @@
 //! The polynomials of a stencil, one a part of a region: their bases, columns and particular parts.
 
 use super::adapted;
-use super::basis::Jet;
+use super::basis::{Basis, Jet};
+use super::dense;
 use super::maker::Maker;
 use super::params::Form;
 use super::stencil::Stencil;
@@ -85,6 +86,14 @@ fn is_softer<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: 
         Some(maker.problem.eta[stencil.nodes[node] as usize])
     };
     place > 0 && eta(place).zip(eta(0)).is_some_and(|(other, own)| other < own)
+}
+
+fn evaluate_monomials<const D: usize>(basis: &Basis<D>, z: &[f64; D], slopes: bool, jet: &mut Jet<D>) {
+    if slopes {
+        basis.evaluate(z, jet);
+    } else {
+        basis.evaluate_values(z, jet);
+    }
 }
 
 /// The polynomials of a stencil.
@@ -239,7 +248,8 @@ impl<const D: usize> Parts<D> {
         functional.value * square + slope + functional.laplacian * (2 * D) as f64
     }
 
-    /// Evaluates the functions of a part at z, their slopes if asked for, and what its particular part needs there.
+    /// Evaluates the functions of a part at z, their slopes if asked for, and what its particular part needs there; without slopes,
+    /// for rows of values only.
     pub(super) fn evaluate(
         &mut self,
         maker: &Maker<'_, D>,
@@ -255,19 +265,20 @@ impl<const D: usize> Parts<D> {
             Equation::Harmonic { source, .. } => {
                 maker.harmonic_basis.evaluate(z, jet);
                 if let (Source::Fitted(_), Some(particular)) = (source, &maker.particular) {
-                    particular.basis.evaluate(z, &mut self.particular);
+                    evaluate_monomials(&particular.basis, z, slopes, &mut self.particular);
                 }
             }
             Equation::Adapted(coefficients) => {
                 maker.harmonic_basis.evaluate(z, jet);
                 let Some(adapted) = &maker.adapted else { return };
                 let monomials = &mut self.particular;
-                adapted.basis.evaluate(z, monomials);
-                let lacking = coefficients.chunks_exact(monomials.values.len());
-                for ((value, slope), lacks) in jet.values.iter_mut().zip(&mut jet.gradients).zip(lacking) {
-                    *value += lacks.iter().zip(&monomials.values).map(|(c, v)| c * v).sum::<f64>();
-                    if slopes {
-                        for (c, gradient) in lacks.iter().zip(&monomials.gradients) {
+                evaluate_monomials(&adapted.basis, z, slopes, monomials);
+                let functions = jet.values.len();
+                let lacking = &coefficients[..functions * monomials.values.len()];
+                dense::add_combination(&monomials.values, lacking, &mut jet.values);
+                if slopes {
+                    for (gradient, lacks) in monomials.gradients.iter().zip(lacking.chunks_exact(functions)) {
+                        for (slope, c) in jet.gradients.iter_mut().zip(lacks) {
                             slope.iter_mut().zip(gradient).for_each(|(s, g)| *s += c * g);
                         }
                     }
@@ -279,6 +290,9 @@ impl<const D: usize> Parts<D> {
     /// A functional of the particular part at the point that was evaluated last: for the source, and for a source of 1.
     pub(super) fn apply_to_particular(&self, part: usize, functional: &Row<D>) -> [f64; 2] {
         let of_monomials = |coefficients: &[f64]| -> f64 {
+            if functional.is_value() {
+                return functional.value * dense::dot(coefficients, &self.particular.values);
+            }
             coefficients.iter().enumerate().map(|(m, c)| c * functional.apply(&self.particular, m)).sum()
         };
         match &self.parts[part].equation {
