@@ -94,6 +94,17 @@ fn jumps_are_effects_and_call_for_fits_on_both_sides() {
 }
 
 #[test]
+fn gaps_are_refined_where_the_scene_asks_for_it() {
+    let text = Small { inside: Some("7"), ..Small::default() }.text();
+    let plan = |text: &str| Plan::new(&Scene::parse(text, "small.toml").expect("a scene")).expect("a plan");
+    assert_eq!(plan(&text).refine_gaps_to, None);
+    let plan = plan(&text.replace("[points]\n", "[points]\nrefine_gaps_to = 1e-3\n"));
+    assert_eq!(plan.refine_gaps_to, Some(1e-3));
+    assert!(plan.effects.contains(&Effect::GradedCloud));
+    assert!(plan.to_string().contains("gaps        refined where they are thinner than 2 spacings"));
+}
+
+#[test]
 fn skipped_stages_have_reasons_and_are_not_also_run() {
     for small in [Small::default(), Small { inside: Some("7"), source: Some("x"), ..Small::default() }] {
         let plan = plan(&small);

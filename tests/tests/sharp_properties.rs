@@ -5,6 +5,7 @@ use meshless::plan::{MethodParams, Plan, Stage};
 use meshless::scene::{MethodName, Scene};
 use meshless::{Silent, Solution, execute};
 
+use meshless_tests::kraus;
 use meshless_tests::sharp::{circle_mode, ellipse, graded, rings};
 use proptest::prelude::*;
 
@@ -268,6 +269,17 @@ fn conditions_on_the_flux() {
 }
 
 #[test]
+fn the_highest_orders() {
+    for order in [10, 12, 14, 16] {
+        let error = solve(&kraus::interior(1e6, kraus::SUPPORT * 0.1, 1), order, Form::Trefftz)
+            .report
+            .errors
+            .expect("exact");
+        assert!(error.l2 < 1e-9 && error.gradient_linf < 1e-7, "order {order}: {error:?}");
+    }
+}
+
+#[test]
 fn the_line() {
     let text = "title = \"Line\"\ndimension = 1\n[domain]\nbox = { min = [0.0], max = [1.0] }\n\
                 [points]\nspacing = 0.05\nlayout = \"irregular\"\nseed = 1\n\
@@ -280,4 +292,14 @@ fn the_line() {
                 [[boundaries]]\nface = \"right\"\ndirichlet = \"(x - 0.412)/1.412 + (x - 0.412)^2/1.412\"\n";
     let errors = solve(text, 6, Form::Trefftz).report.errors.expect("exact");
     assert!(errors.l2 < 1e-8, "{errors:?}");
+    for order in (4..=16).step_by(2) {
+        let errors = solve(text, order, Form::Trefftz).report.errors.expect("exact");
+        // Powers on 17 and 19 nodes of a line: their condition is what is left.
+        let limit = match order {
+            4 => 1e-5,
+            6..=12 => 1e-8,
+            _ => 1e-6,
+        };
+        assert!(errors.l2 < limit && errors.gradient_linf < 100.0 * limit, "order {order}: {errors:?}");
+    }
 }

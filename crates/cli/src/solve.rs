@@ -74,6 +74,15 @@ fn print(report: &Report, solution: &Solution) {
     if let Some(why) = &report.fallback {
         say!("fallback    {why}");
     }
+    if let Some(layer) = &report.thin_layer {
+        say!(
+            "thin layer  \"{}\" is {:.2e} thin near {:?}: less accurate there; a spacing of {:.2e} resolves it",
+            layer.region,
+            layer.thickness,
+            layer.at,
+            layer.resolving_spacing
+        );
+    }
     let nodes = &report.nodes;
     say!(
         "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",

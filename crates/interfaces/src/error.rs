@@ -35,6 +35,21 @@ pub enum MethodError {
         /// A spacing that resolves the gap or layer.
         spacing: f64,
     },
+    /// A layer, a gap or an inclusion that the nodes do not resolve.
+    #[error(
+        "region {region} is {thickness:.2e} thin near {position:?}, too thin for fits on nodes this far apart; take a spacing \
+         of about {spacing:.2e} there, or gfdm-hybrid"
+    )]
+    ThinLayer {
+        /// The region, by its place in the list.
+        region: u16,
+        /// The middle of it there.
+        position: Vec<f64>,
+        /// How thin it is.
+        thickness: f64,
+        /// A spacing that resolves it.
+        spacing: f64,
+    },
     /// A Voronoi cell could not be closed.
     #[error("no Voronoi cell at node {node} (near {position:?}): {source}")]
     Cell {

@@ -71,12 +71,13 @@ impl Error {
 
     /// Whether a finer cloud may help.
     pub fn is_too_coarse(&self) -> bool {
-        use MethodError::{Cell, NoFoot, Stencil, Unresolved};
+        use MethodError::{Cell, NoFoot, Stencil, ThinLayer, Unresolved};
         matches!(
             self,
             Self::TooCoarse(_)
                 | Self::Method(
                     Unresolved { .. }
+                        | ThinLayer { .. }
                         | NoFoot { .. }
                         | Stencil { .. }
                         | Cell { .. }

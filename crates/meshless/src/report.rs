@@ -22,6 +22,9 @@ pub struct Report {
     /// Why another method ran than the plan says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fallback: Option<String>,
+    /// The layer, gap or inclusion that the fits of the sharp method resolve least; absent where all are two spacings thick.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thin_layer: Option<ThinLayerReport>,
     /// Largest diffusivity of a node over the smallest.
     pub contrast: f64,
     /// What the scene calls for.
@@ -53,6 +56,19 @@ pub struct Report {
     pub peak_memory_mb: f64,
     /// Values at the probes.
     pub probes: Vec<Probe>,
+}
+
+/// A layer, gap or inclusion that is thinner than fits want it: the solution is less accurate there.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct ThinLayerReport {
+    /// Name of the region.
+    pub region: String,
+    /// The middle of it, where it is thinnest in units of the spacing.
+    pub at: Vec<f64>,
+    /// How thin it is there.
+    pub thickness: f64,
+    /// The spacing that would resolve it.
+    pub resolving_spacing: f64,
 }
 
 /// The time steps of an unsteady scene.

@@ -8,6 +8,7 @@ mod lattice;
 mod line;
 mod params;
 mod quality;
+mod sizes;
 mod validate;
 
 pub(crate) use estimate::too_many;
@@ -16,6 +17,7 @@ pub use generate::generate;
 pub use given::{GivenCloud, GivenParams, around};
 pub use params::{CloudParams, Layout, Spacing, SpacingFn};
 pub use quality::{CloudQuality, quality};
+pub(crate) use sizes::{Size, Sizes};
 
 use crate::domain::FaceId;
 use crate::error::GeometryError;

@@ -19,6 +19,7 @@ mod rate;
 mod sample;
 mod stencil;
 mod thickness;
+mod thin;
 mod unknowns;
 
 use std::time::Instant;
@@ -33,6 +34,8 @@ use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
 pub use params::{Form, MAX_ORDER, SharpParams};
 use sample::Values;
+pub use thickness::RESOLVED;
+pub use thin::{resolving_spacing, suspect, thinnest, unresolved};
 use unknowns::Unknowns;
 
 /// The sharp method.
@@ -80,7 +83,9 @@ impl Sharp {
 impl<const D: usize> Method<D> for Sharp {
     fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
         let start = Instant::now();
+        self.check(problem)?;
         let known = problem.dirichlet();
+        thin::check(problem)?;
         self.with_maker(problem, |maker| {
             let rows = (0..known.len())
                 .into_par_iter()

@@ -1,9 +1,9 @@
 //! The cloud of a scene: generated, or round the points of a file.
 
-use meshless_geometry::{Cloud, CloudParams, Domain, GivenParams, RegionMap, around, generate};
+use meshless_geometry::{Cloud, CloudParams, Domain, GapParams, GivenParams, RegionMap, around, generate};
 
 use super::shapes::{explain_cloud, layout, regions, spacing};
-use crate::scene::{FilePoints, PointsFileSpec, Scene};
+use crate::scene::{FilePoints, GapSpec, PointsFileSpec, Scene};
 use crate::{Error, MAX_NODES};
 
 /// How far outside of the domain a point may lie, relative to the domain's size: rounding in the file.
@@ -36,7 +36,13 @@ pub(crate) fn place<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result
             seed: scene.points.seed,
             max_nodes: MAX_NODES,
         };
-        let cloud = generate(domain, &params).map_err(|e| explain_cloud(scene, e))?;
+        let made = match scene.points.gaps {
+            Some(GapSpec { least, across }) => {
+                regions.generate(domain, &params, &GapParams { across, least })
+            }
+            None => generate(domain, &params),
+        };
+        let cloud = made.map_err(|e| explain_cloud(scene, e))?;
         return Ok(Placed { cloud, regions, labels: None });
     };
     let given = file_points::<D>(scene, file)?;

@@ -7,7 +7,7 @@ use meshless_geometry::{Aabb, Domain, GeometryError, Layout, LevelSet, RegionMap
 
 use super::surfaces::surface;
 use crate::Error;
-use crate::scene::{BoundsSpec, DomainSpec, ExprField, LayoutName, Place, Scene, ShapeSpec};
+use crate::scene::{BoundsSpec, DomainSpec, ExprField, GapSpec, LayoutName, Place, Scene, ShapeSpec};
 
 /// A level set with the derivatives of its expression.
 struct ExprLevelSet<const D: usize> {
@@ -92,6 +92,10 @@ pub(crate) fn with_spacing_times(scene: &Scene, factor: f64) -> Scene {
         // The points that are left are as far apart as they are.
         file.thin *= factor;
         return coarse;
+    }
+    if let Some(gaps) = &mut coarse.points.gaps {
+        // What goes on in gaps is to be seen at both spacings.
+        *gaps = GapSpec { least: factor * gaps.least, across: gaps.across / factor };
     }
     let ExprField { text, expr, .. } = &scene.points.spacing;
     let variables = &["x", "y", "z"][..scene.dimension];

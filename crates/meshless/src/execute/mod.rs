@@ -13,9 +13,12 @@ mod unsteady;
 
 use std::time::Instant;
 
-use meshless_interfaces::{Discretization, RowKind, SystemParams, SystemSolution, diagnose_nodes, solve};
+use meshless_geometry::ThinLayer;
+use meshless_interfaces::{
+    Discretization, MethodError, Problem, RowKind, SystemParams, SystemSolution, diagnose_nodes, sharp, solve,
+};
 
-use crate::plan::{Plan, Stage};
+use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
 use crate::{Error, NodalField};
@@ -166,9 +169,20 @@ fn solve_steady<const D: usize>(
     progress.stage(Stage::Solve);
     let start = Instant::now();
     let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
-    let system = solve(&problem, &discretization, &params).map_err(|e| discrete.explain(scene, e))?;
+    let system = solve(&problem, &discretization, &params).map_err(|e| match e {
+        MethodError::Solve(_) if matches!(plan.method.params, MethodParams::Sharp(_)) => {
+            sharp::suspect(&problem).map_or(e, |layer| sharp::unresolved(&layer))
+        }
+        e => e,
+    });
+    let system = system.map_err(|e| discrete.explain(scene, e))?;
     seconds.solve = start.elapsed().as_secs_f64();
     Ok(Solved { discrete, discretization, system, seconds, history: None })
+}
+
+/// The layer or gap that fits across interfaces resolve least, where one is too thin for them.
+fn thin_layer<const D: usize>(plan: &Plan, problem: &Problem<'_, D>) -> Option<ThinLayer<D>> {
+    matches!(plan.method.params, MethodParams::Sharp(_)).then(|| sharp::thinnest(problem)).flatten()
 }
 
 fn execute_in<const D: usize>(

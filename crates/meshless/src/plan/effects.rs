@@ -138,7 +138,10 @@ impl Survey {
         note(build::is_curved(scene), Effect::CurvedBoundary);
         let [count, degenerate] = build::triangle_counts(scene)?;
         note(count > 0, Effect::Triangles { count, degenerate });
-        note(scene.points.spacing.expr.as_constant().is_none(), Effect::GradedCloud);
+        note(
+            scene.points.spacing.expr.as_constant().is_none() || scene.points.gaps.is_some(),
+            Effect::GradedCloud,
+        );
         Ok(Self { effects, uniform, contrast })
     }
 

@@ -17,7 +17,10 @@ pub(super) fn of(scene: &Scene, method: &MethodPlan) -> Option<MethodName> {
 impl Plan {
     /// The plan to go on with after `error`, where this one has something to fall back on for it.
     pub fn after(&self, error: &MethodError, scene: &Scene) -> Result<Option<Self>, Error> {
-        let (Some(name), MethodError::Unresolved { .. } | MethodError::Solve(_)) = (self.fallback, error)
+        let (
+            Some(name),
+            MethodError::Unresolved { .. } | MethodError::ThinLayer { .. } | MethodError::Solve(_),
+        ) = (self.fallback, error)
         else {
             return Ok(None);
         };
@@ -25,7 +28,15 @@ impl Plan {
         // An order that was asked for is that of the fits; balances have their own.
         let mut scene = scene.clone();
         scene.method.order = None;
-        let why = format!("in place of \"{}\": {error}", self.method.name.as_str());
+        let what = match error {
+            MethodError::ThinLayer { region, position, thickness, spacing } => format!(
+                "the region \"{}\" is {thickness:.2e} thin near {position:?}, which a spacing of {spacing:.2e} there \
+                 resolves (`refine_gaps_to` in [points])",
+                scene.regions[*region as usize].name
+            ),
+            error => error.to_string(),
+        };
+        let why = format!("in place of \"{}\": {what}", self.method.name.as_str());
         let method = choose::described(name, why, &scene, &survey);
         let solver = choose::solver(&scene, &survey, name, self.predicted.unknowns);
         let (mut stages, skipped) = choose::stages(&scene, &survey, &method);

@@ -33,6 +33,8 @@ pub struct Plan {
     pub method: MethodPlan,
     /// What is taken where the nodes turn out not to resolve a gap or a layer; `None` where that is an error.
     pub fallback: Option<MethodName>,
+    /// The smallest spacing that gaps and layers are refined to; `None` where the cloud does not know of them.
+    pub refine_gaps_to: Option<f64>,
     /// The linear solver.
     pub solver: SolverParams,
     /// The error to reach by smaller and smaller spacings; without one the scene is solved once.
@@ -149,6 +151,7 @@ impl Plan {
             dimension: scene.dimension,
             effects: survey.effects,
             fallback: fallback::of(scene, &method),
+            refine_gaps_to: scene.points.gaps.map(|gaps| gaps.least),
             method,
             solver,
             accuracy: AccuracyPlan::new(scene),

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use meshless_interfaces::sharp;
 use meshless_sparse::{AUTO_RESTART, SolverKind};
 
 use super::{AccuracyPlan, MethodParams, Plan, Stage};
@@ -68,6 +69,13 @@ impl fmt::Display for Plan {
                 f,
                 "fallback    {}, where the nodes do not resolve a gap or a layer, or the solver gives up",
                 fallback.as_str()
+            )?;
+        }
+        if let Some(least) = self.refine_gaps_to {
+            writeln!(
+                f,
+                "gaps        refined where they are thinner than {:.0} spacings, to spacings of {least:.2e} at least",
+                sharp::RESOLVED
             )?;
         }
         writeln!(f, "solver      {}", self.solver_name())?;

@@ -3,19 +3,24 @@
 use std::collections::HashSet;
 use std::path::PathBuf;
 
+use meshless_interfaces::sharp;
+
 use super::accuracy::{AccuracySpec, first_spacing};
 use super::error::SceneError;
 use super::expression::ExprField;
-use super::free_space::FREE_SPACE;
+use super::free_space::{FREE_SPACE, is_open};
 use super::points_file::PointsFileSpec;
 use super::reader::{Table, Value};
 use super::shapes::{bounds, keys_with_shape, required_shape};
 use super::spec::{
-    ALL_FACES, BOX_FACES, DomainSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec, ShapeSpec,
+    ALL_FACES, BOX_FACES, DomainSpec, GapSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec, ShapeSpec,
 };
 
 /// Seed of the random numbers, unless the scene gives one.
 const DEFAULT_SEED: u64 = 1;
+
+/// The key of `[points]` that has gaps refined.
+const GAPS: &str = "refine_gaps_to";
 
 pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     let table = root.require("domain")?.table()?;
@@ -60,32 +65,48 @@ pub(super) fn points(
                 layout: LayoutName::Irregular,
                 seed: DEFAULT_SEED,
                 file: None,
+                gaps: None,
                 place: place.clone(),
             }),
             None => Err(root.missing("points", "")),
         };
     };
-    table.allow(&["spacing", "layout", "seed", "file"])?;
+    table.allow(&["spacing", "layout", "seed", "file", GAPS])?;
     if let Some(value) = table.get("file") {
         return points_of_file(&table, &value, accuracy);
     }
+    let layout = match table.get("layout") {
+        Some(value) => value.one_of(&LAYOUTS)?,
+        None => LayoutName::Irregular,
+    };
     Ok(PointsSpec {
         file: None,
+        gaps: gaps(&table, layout, is_open(root))?,
         spacing: match (table.get("spacing"), first()) {
             (Some(value), _) => value.expression()?.check_positive()?,
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
             (None, None) => return Err(table.missing("spacing", "")),
         },
-        layout: match table.get("layout") {
-            Some(value) => value.one_of(&LAYOUTS)?,
-            None => LayoutName::Irregular,
-        },
+        layout,
         seed: match table.get("seed") {
             Some(value) => value.integer(0, u64::MAX)?,
             None => DEFAULT_SEED,
         },
         place: table.place,
     })
+}
+
+/// How far gaps are refined.
+fn gaps(table: &Table<'_>, layout: LayoutName, open: bool) -> Result<Option<GapSpec>, SceneError> {
+    let Some(value) = table.get(GAPS) else { return Ok(None) };
+    if layout != LayoutName::Irregular {
+        let help = "take the layout \"irregular\", or leave the key out";
+        return Err(value.error("only irregular clouds can be refined in gaps", help));
+    }
+    if open {
+        return Err(value.error("in free space nothing has a gap", "leave the key out"));
+    }
+    Ok(Some(GapSpec { least: value.positive()?, across: sharp::RESOLVED }))
 }
 
 /// Points from a file; how far apart they are can be left to their number.
@@ -98,7 +119,7 @@ fn points_of_file(
         let message = "points from a file cannot be refined until a tolerance is reached";
         return Err(spec.place.error(message, "remove the section, and judge by the reported estimate"));
     }
-    for key in ["layout", "seed"] {
+    for key in ["layout", "seed", GAPS] {
         if let Some(value) = table.get(key) {
             return Err(value.error(format!("points from a file have no {key}"), "remove the key"));
         }
@@ -111,6 +132,7 @@ fn points_of_file(
         spacing: spacing.unwrap_or(unit),
         layout: LayoutName::Irregular,
         seed: DEFAULT_SEED,
+        gaps: None,
         file: Some(PointsFileSpec { path: PathBuf::from(file.text()?), spaced, thin: 1.0, place }),
         place: table.place.clone(),
     })

@@ -135,8 +135,19 @@ pub struct PointsSpec {
     pub seed: u64,
     /// The file that the points come from, if they are not generated.
     pub file: Option<PointsFileSpec>,
+    /// How far gaps and layers are refined, if they are.
+    pub gaps: Option<GapSpec>,
     /// The table in the file.
     pub place: Place,
+}
+
+/// What spacings gaps and layers between interfaces get.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GapSpec {
+    /// The smallest one, positive.
+    pub least: f64,
+    /// So many go on the way through a layer.
+    pub across: f64,
 }
 
 /// How regular a cloud is.
