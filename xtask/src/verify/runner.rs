@@ -30,6 +30,8 @@ pub(crate) struct Extra {
     pub(crate) picture: bool,
     /// By BiCGStab(2) to this residual, whatever the plan says.
     pub(crate) krylov: Option<f64>,
+    /// Estimate the error.
+    pub(crate) estimate: bool,
     /// To this residual, by the plan's solver.
     pub(crate) residual: Option<f64>,
 }
@@ -42,7 +44,7 @@ pub(crate) fn solve(problem: &str, key: &Key, extra: Extra) -> Result<Solution, 
     }
     scene.output.plot = extra.picture;
     let mut plan = Plan::new(&scene)?;
-    plan.stages.retain(|stage| *stage != Stage::Estimate);
+    plan.stages.retain(|stage| *stage != Stage::Estimate || extra.estimate);
     if let Some(tolerance) = extra.krylov {
         plan.solver.kind = SolverKind::BiCgStab { l: 2 };
         plan.solver.preconditioner = PreconditionerKind::Ilu0;

@@ -24,11 +24,21 @@ pub(super) struct Ladder {
     pub(super) contrasts: Vec<f64>,
     pub(super) seeds: Vec<u64>,
     pub(super) levels: Range<usize>,
-    /// Other methods on the same clouds.
-    pub(super) compared: bool,
     /// Orders of u and of its gradient are claimed.
     pub(super) smooth: bool,
+    /// In three dimensions.
+    pub(super) space: bool,
+    /// Other methods that cannot solve it, and why; all the rest run on the same clouds.
+    pub(super) beyond: Beyond,
 }
+
+/// Methods that cannot solve a problem, and why.
+pub(super) type Beyond = &'static [(&'static str, &'static str)];
+
+const NO_VALUE_JUMPS: Beyond =
+    &[("gfdm-classical", "no prescribed jumps"), ("surface-reaction", "no jumps of u")];
+
+const NO_FLUX_JUMPS: Beyond = &[("gfdm-classical", "no prescribed jumps")];
 
 /// Nodes along an edge of length 2.
 pub(super) fn along(h: f64) -> usize {
@@ -63,13 +73,13 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
         contrasts: vec![contrast],
         seeds: seeds.clone(),
         levels: 0..finest,
-        compared: false,
         smooth: true,
+        space: false,
+        beyond: &[],
     };
     let mut ladders = vec![
         Ladder {
             contrasts: if quick { vec![1e2, 1e10] } else { vec![1e2, 1e6, 1e10] },
-            compared: true,
             ..plain(
                 "interior",
                 "Interior interface",
@@ -79,7 +89,7 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
             )
         },
         Ladder {
-            compared: true,
+            beyond: NO_FLUX_JUMPS,
             ..plain(
                 "disc",
                 "Disc of variable conductivity",
@@ -95,7 +105,10 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
             graded,
             1e4,
         ),
-        plain("star", "Star", "u and its flux jump along a star-shaped interface.", star, 1e2),
+        Ladder {
+            beyond: NO_VALUE_JUMPS,
+            ..plain("star", "Star", "u and its flux jump along a star-shaped interface.", star, 1e2)
+        },
     ];
     if at_least(effort, Effort::Default) {
         let from_first = |ladder: Ladder| Ladder { levels: 1..finest, seeds: vec![1, 2], ..ladder };
@@ -104,14 +117,27 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
         ladders.extend([
             Ladder {
                 contrasts: vec![1e10, 1e-10],
-                compared: true,
                 ..finer(plain("mode-3", "Disc in a field of mode 3", "No source, no jump.", circle_mode, 0.0))
             },
-            from_first(plain("ellipse", "Ellipse", "u and its flux jump along an ellipse.", ellipse, 1e2)),
-            from_first(plain("pair", "Two discs", "At a distance of half a spacing.", pair, 1e2)),
-            from_first(plain("quadrants", "Four materials", "They meet at a point.", quadrants, 1e4)),
             Ladder {
-                compared: true,
+                beyond: NO_VALUE_JUMPS,
+                ..from_first(plain(
+                    "ellipse",
+                    "Ellipse",
+                    "u and its flux jump along an ellipse.",
+                    ellipse,
+                    1e2,
+                ))
+            },
+            Ladder {
+                beyond: NO_VALUE_JUMPS,
+                ..from_first(plain("pair", "Two discs", "At a distance of half a spacing.", pair, 1e2))
+            },
+            Ladder {
+                beyond: &[("immersed-interface", "four regions meet")],
+                ..from_first(plain("quadrants", "Four materials", "They meet at a point.", quadrants, 1e4))
+            },
+            Ladder {
                 ..from_first(plain(
                     "curved",
                     "Curved interface",
@@ -120,19 +146,27 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
                     1e2,
                 ))
             },
-            finer(plain(
-                "cylinder",
-                "Flow about a cylinder",
-                "The flux jumps, the conductivity does not.",
-                flow,
-                1.0,
-            )),
+            Ladder {
+                beyond: NO_FLUX_JUMPS,
+                ..finer(plain(
+                    "cylinder",
+                    "Flow about a cylinder",
+                    "The flux jumps, the conductivity does not.",
+                    flow,
+                    1.0,
+                ))
+            },
             Ladder {
                 variants: vec![sharp_in_space(4), sharp_in_space(6)],
                 contrasts: vec![1e10, 1e-10],
                 seeds: vec![1],
                 levels: 0..2,
                 smooth: false,
+                space: true,
+                beyond: &[(
+                    "gfdm-classical",
+                    "smeared over the interface, it has no solution to 1e-11 at 1e10",
+                )],
                 ..plain("ball", "Ball in a field of mode 3", "In space.", ball_mode, 0.0)
             },
             Ladder {
@@ -140,6 +174,8 @@ pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
                 seeds: vec![1],
                 levels: 0..2,
                 smooth: false,
+                space: true,
+                beyond: NO_VALUE_JUMPS,
                 ..plain("torus", "Torus", "In space; u and its flux jump.", torus, 1e2)
             },
         ]);

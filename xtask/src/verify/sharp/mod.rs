@@ -2,6 +2,8 @@
 
 mod cases;
 mod checks;
+mod estimates;
+mod gaps;
 mod iterations;
 mod sections;
 mod singles;
@@ -53,21 +55,30 @@ const fn sharp_in_space(order: usize) -> Variant {
 
 /// What it is compared with: all methods of the workspace, as they choose their parameters themselves, and a higher order
 /// of its own.
-const OTHERS: [Variant; 8] = [
+const OTHERS: [Variant; 9] = [
     sharp(8),
     Variant::plain("gfdm-classical").directly(),
     Variant::plain("gfdm-positive").directly(),
     Variant::plain("gfdm-hybrid").directly(),
     Variant::plain("gfdm-conservative").directly(),
     Variant { support: None, ..Variant::plain("particle-difference").directly() },
+    Variant { support: None, ..Variant::plain("particle-difference-extended").directly() },
     Variant { support: None, ..Variant::plain("immersed-interface").directly() },
     Variant { support: None, ..Variant::plain("surface-reaction").directly() },
 ];
 
-/// The other methods that a case is solved by: collocation alone does not know jumps of the flux.
-fn others(case: &str) -> impl Iterator<Item = Variant> {
-    let flux_jumps = case == "disc";
-    OTHERS.into_iter().filter(move |v| !(flux_jumps && v.method == "gfdm-classical"))
+/// The problems of which finer clouds are compared, too, and which the quick sweep compares.
+const COMPARED: [&str; 4] = ["interior", "disc", "mode-3", "curved"];
+
+/// The finest rung of the others, of about 1500 nodes in the plane, and of those of about 6000.
+const FINEST_COMPARED: [usize; 2] = [2, 3];
+
+/// What a problem is solved by for comparison, in space by the solver that the plan chooses.
+fn others(ladder: &Ladder) -> impl Iterator<Item = Variant> {
+    let (beyond, space) = (ladder.beyond, ladder.space);
+    let others = OTHERS.into_iter().filter(move |v| !(space && v.order == Some(8)));
+    let others = others.filter(move |v| beyond.iter().all(|(method, _)| *method != v.method));
+    others.map(move |v| if space { Variant { solver: None, ..v } } else { v })
 }
 
 /// Node spacing of a rung.
@@ -80,9 +91,11 @@ pub(super) fn run(options: &Options) -> Study {
     let mut claims = Claims::new(SUITE, options.is_filtered());
     let effort = options.effort;
     let ladders = ladders(effort);
-    let mut jobs: Vec<Job> = ladders.iter().flat_map(ladder_jobs).collect();
+    let mut jobs: Vec<Job> = ladders.iter().flat_map(|ladder| ladder_jobs(ladder, effort)).collect();
     jobs.extend(singles::single_runs(effort));
     jobs.extend(iterations::jobs(effort));
+    jobs.extend(gaps::jobs(effort));
+    jobs.extend(estimates::jobs(&ladders, effort));
     runner.run_all(jobs);
     for ladder in &ladders {
         if options.wants(ladder.case, "sharp") {
@@ -92,6 +105,8 @@ pub(super) fn run(options: &Options) -> Study {
     at_probes(&mut runner);
     checks::single(&runner, effort, &mut claims);
     iterations::check(&runner, effort, &mut claims);
+    gaps::check(&runner, effort, &mut claims);
+    estimates::check(&runner, &ladders, effort, &mut claims);
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
     let sections = sections::sections(&runner, &ladders);
@@ -105,7 +120,7 @@ fn at_probes(runner: &mut Runner<'_>) {
     }
 }
 
-fn ladder_jobs(ladder: &Ladder) -> Vec<Job> {
+fn ladder_jobs(ladder: &Ladder, effort: Effort) -> Vec<Job> {
     let mut jobs = Vec::new();
     for &variant in &ladder.variants {
         for &jump in &ladder.contrasts {
@@ -120,10 +135,12 @@ fn ladder_jobs(ladder: &Ladder) -> Vec<Job> {
         }
     }
     // The others on the first contrast and cloud only: for the diagram of costs.
-    if ladder.compared {
-        for variant in others(ladder.case) {
+    let compared = COMPARED.contains(&ladder.case);
+    if compared || effort > Effort::Quick {
+        let finest = FINEST_COMPARED[usize::from(compared)];
+        for variant in others(ladder) {
             let (jump, seed) = (ladder.contrasts[0], ladder.seeds[0]);
-            jobs.extend(ladder.levels.clone().map(|level| Job {
+            jobs.extend(ladder.levels.clone().filter(|&level| level <= finest).map(|level| Job {
                 problem: (ladder.scene)(jump, spacing(level), seed),
                 key: Key { case: ladder.case, variant, jump, level, seed },
                 extra: Extra::default(),

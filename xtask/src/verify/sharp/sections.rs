@@ -1,8 +1,8 @@
 //! What the report shows of each case.
 
-use super::OTHERS;
 use super::cases::Ladder;
 use super::checks::{Error, rungs};
+use super::others;
 use crate::verify::figure::{Curve, Figure};
 use crate::verify::runner::{self, Extra, Runner};
 use crate::verify::study::{Key, Picture, Section, find};
@@ -14,11 +14,7 @@ pub(super) fn sections(runner: &Runner<'_>, ladders: &[Ladder]) -> Vec<Section> 
 }
 
 fn section(runner: &Runner<'_>, ladder: &Ladder) -> Section {
-    let variants: Vec<Variant> = if ladder.compared {
-        ladder.variants.iter().copied().chain(OTHERS).collect()
-    } else {
-        ladder.variants.clone()
-    };
+    let variants: Vec<Variant> = ladder.variants.iter().copied().chain(others(ladder)).collect();
     let jump = ladder.contrasts[0];
     let key = |variant| Key { case: ladder.case, variant, jump, level: 0, seed: ladder.seeds[0] };
     let curves = |error: Error| -> Vec<Curve> {
@@ -62,7 +58,7 @@ fn section(runner: &Runner<'_>, ladder: &Ladder) -> Section {
             ),
             figure(
                 "cost",
-                "Error against seconds from points to solution, same clouds.".to_owned(),
+                format!("Error against seconds from points to solution, same clouds.{}", beyond(ladder)),
                 "seconds",
                 l2,
                 cost,
@@ -72,6 +68,12 @@ fn section(runner: &Runner<'_>, ladder: &Ladder) -> Section {
         pictures: picture(ladder).into_iter().collect(),
         tables: Vec::new(),
     }
+}
+
+/// Which methods cannot solve the problem, and why.
+fn beyond(ladder: &Ladder) -> String {
+    let all: Vec<String> = ladder.beyond.iter().map(|(method, why)| format!("{method} ({why})")).collect();
+    if all.is_empty() { String::new() } else { format!(" Cannot solve it: {}.", all.join("; ")) }
 }
 
 /// Seconds and error of every rung.

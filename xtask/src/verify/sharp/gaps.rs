@@ -1,0 +1,75 @@
+//! Two discs at a fifth of a spacing in a field that is as large between them as the gap is thin, with the gap refined and without.
+
+use meshless_tests::sharp::two_discs;
+
+use super::sharp;
+use crate::verify::claims::Claims;
+use crate::verify::jobs::Job;
+use crate::verify::options::Effort;
+use crate::verify::runner::{Extra, Runner};
+use crate::verify::study::{Key, Outcome, find};
+
+const CASE: &str = "pair";
+
+const SPACING: f64 = 0.05;
+
+const CONTRASTS: [f64; 2] = [10.0, 1e4];
+
+/// Levels of these runs, which belong to no ladder: as it is, and refined.
+const LEVELS: [usize; 2] = [2000, 2001];
+
+/// Largest errors of u and of its gradient at order 4, refined, and the least factor that this brings.
+const L2: f64 = 1e-3;
+const GRADIENT: f64 = 1e-2;
+const GAIN: f64 = 10.0;
+
+/// What the same cloud leaves where the gap is two of its spacings, and a third more.
+const WIDE: f64 = 2e-3;
+
+fn key(jump: f64, level: usize) -> Key {
+    Key { case: CASE, variant: sharp(4), jump, level, seed: 1 }
+}
+
+pub(super) fn jobs(effort: Effort) -> Vec<Job> {
+    if effort == Effort::Quick {
+        return Vec::new();
+    }
+    let job = |jump: f64, level: usize| {
+        let text = two_discs(jump, 0.2 * SPACING, SPACING, 1);
+        let problem = match level == LEVELS[1] {
+            true => text.replace("[points]\n", "[points]\nrefine_gaps_to = 1e-4\n"),
+            false => text,
+        };
+        Job { problem, key: key(jump, level), extra: Extra::default() }
+    };
+    CONTRASTS.iter().flat_map(|&jump| LEVELS.map(|level| job(jump, level))).collect()
+}
+
+pub(super) fn check(runner: &Runner<'_>, effort: Effort, claims: &mut Claims) {
+    if effort == Effort::Quick || !runner.options.wants(CASE, "sharp") {
+        return;
+    }
+    for jump in CONTRASTS {
+        let [plain, refined] = LEVELS.map(|level| find(&runner.outcomes, &key(jump, level)));
+        let l2 = |outcome: Option<&Outcome>| outcome?.row.err_l2;
+        let what = format!("contrast {jump:e}, p = 4: gap of a fifth of a spacing");
+        claims.explained(
+            CASE,
+            format!("{what}, refined: relative L2 error"),
+            l2(refined),
+            [0.0, L2],
+            [L2, WIDE],
+            "the discs are as stiff as conductors, and the coarse cloud about them leaves 1.5e-3 also where the gap is two of its \
+             spacings; at order 6 it is 1.6e-4.",
+        );
+        let gradient = refined.and_then(|o| o.row.err_grad_linf);
+        claims.at_most(
+            CASE,
+            format!("{what}, refined: relative maximum error of the gradient"),
+            gradient,
+            GRADIENT,
+        );
+        let gain = l2(plain).zip(l2(refined)).map(|(plain, refined)| plain / refined);
+        claims.at_least(CASE, format!("{what}: error without over error with refinement"), gain, GAIN);
+    }
+}
