@@ -25,7 +25,10 @@ fn fields_that_are_linear_on_each_side_are_found_exactly() {
 fn three_shells_converge_with_more_than_second_order_on_any_particles() {
     for particles in [Particles::Lattice, Particles::Jittered(1), Particles::Scattered(2)] {
         let ladder = [8.0, 6.0, 4.5].map(|h| (h, error(&shells(h, particles))));
-        assert!(observed(&ladder) > 2.3 && ladder[2].1 < 9e-3, "{particles:?}: {ladder:?}");
+        // What a prototype had: 0.122 at 8 and 0.0177 at 4, order 2.8.
+        let prototype = |h: f64| 0.0177 * (h / 4.0).powf(2.8);
+        let within = ladder.iter().all(|&(h, error)| error < prototype(h));
+        assert!(observed(&ladder) > 2.3 && within, "{particles:?}: {ladder:?}");
     }
 }
 
@@ -37,7 +40,8 @@ fn two_inclusions_agree_with_the_reference() {
     let (error, size) = probes.iter().zip(REFERENCE).fold((0.0, 0.0), |(error, size), (probe, (_, u))| {
         (error + (probe.value.expect("a value") - u).powi(2), size + u * u)
     });
-    assert!((error / size).sqrt() < 5e-3, "{:e}", (error / size).sqrt());
+    // What is asked for at half of the spacing, times four.
+    assert!((error / size).sqrt() < 4.0 * 2.7e-3, "{:e}", (error / size).sqrt());
 }
 
 /// A disc of five times the conductivity: `u = r^2 / eta + c` on each side. The shapes are forgotten once every node has
@@ -65,5 +69,42 @@ fn a_disc_is_solved_from_labels_alone() {
         assert!(known < 1e-3, "{layout}: {known:e}");
         let ladder = [0.05, 0.025].map(|h| error(&scene(h, layout, "labels")));
         assert!(ladder[1] < 0.03, "{layout}: {ladder:?}, with shapes {known:e}");
+    }
+}
+
+/// Quadratic fields are exact: prescribed values, slopes and Robin conditions at the outer faces and round a hole, by the same
+/// fits; the disc in between is found by its shape, or by a level set that is no distance.
+#[test]
+fn conditions_of_every_kind_at_inner_and_outer_boundaries_are_exact() {
+    let (u, ux, uy) = ("(1 + x - 2*y + x^2 + 3*x*y - y^2)", "(1 + 2*x + 3*y)", "(3*x - 2 - 2*y)");
+    // In the disc half of it: the flux, at twice the diffusivity, is the same, and u jumps.
+    let disc = format!("0.5*{u}");
+    for shape in [
+        "sphere = { center = [0.1, 0.05], radius = 0.42 }",
+        "level_set = \"(x - 0.1)^2 + (y - 0.05)^2 - 0.1764\"",
+    ] {
+        for hole in [
+            format!("dirichlet = \"{disc}\""),
+            format!("neumann = \"-0.5*({ux}*(x - 0.1) + {uy}*(y - 0.05))/0.18\""),
+            format!(
+                "robin = {{ a = 3, b = 2, g = \"3*{disc} - 2*({ux}*(x - 0.1) + {uy}*(y - 0.05))/0.18\" }}"
+            ),
+        ] {
+            let text = format!(
+                "title = \"Ring\"\ndimension = 2\n[domain]\nbox = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}\n\
+                 [points]\nspacing = 0.1\nlayout = \"scattered\"\nseed = 2\n\
+                 [[holes]]\nname = \"hole\"\nsphere = {{ center = [0.1, 0.05], radius = 0.18 }}\n\
+                 [[regions]]\nname = \"ring\"\n{shape}\ndiffusivity = 2\nexact = \"{disc}\"\n\
+                 [[regions]]\nname = \"plate\"\ndiffusivity = 1\nexact = \"{u}\"\n\
+                 [[interfaces]]\nbetween = [\"ring\", \"plate\"]\njump = \"{disc}\"\n\
+                 [[boundaries]]\nface = \"hole\"\n{hole}\n\
+                 [[boundaries]]\nface = \"left\"\ndirichlet = \"{u}\"\n\
+                 [[boundaries]]\nface = \"right\"\nneumann = \"{ux}\"\n\
+                 [[boundaries]]\nface = \"top\"\nflux = \"{uy}\"\n\
+                 [[boundaries]]\nface = \"bottom\"\nrobin = {{ a = 1, b = 1, g = \"{u} - {uy}\" }}\n"
+            );
+            let l2 = error(&text);
+            assert!(l2 < 1e-9, "{shape}, {hole}: {l2:e}");
+        }
     }
 }

@@ -44,11 +44,32 @@ impl<const D: usize> Indicators<D> {
     }
 }
 
+/// The share of another region in the volume of every node: what lies beyond an interface that is nearer than half a
+/// spacing. The label of a node alone leaves the interface anywhere between two nodes, an error of first order.
+fn beyond<const D: usize>(problem: &Problem<'_, D>) -> Vec<Option<(u16, f64)>> {
+    let share = |i: usize| {
+        let (x, h, own) = (&problem.cloud.points()[i], problem.cloud.spacing()[i], problem.labels[i]);
+        let mut others: Vec<u16> =
+            problem.supports.lists.of(i).iter().map(|&j| problem.labels[j as usize]).collect();
+        others.sort_unstable();
+        others.dedup();
+        let distance = |other: u16| {
+            let foot = problem.regions.project(own, other, x, h).ok()?;
+            Some((other, 0.5 - foot.distance.abs() / h))
+        };
+        let nearest =
+            others.into_iter().filter(|&o| o != own).filter_map(distance).max_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, share)| *share > 0.0)
+    };
+    (0..problem.cloud.len()).into_par_iter().map(share).collect()
+}
+
 /// `sum_q chi_q G(x - x_q) / sum_q G(x - x_q)`: the sum over the regions is one.
 fn convolve<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<Vec<Share<D>>>, MethodError> {
     let (points, spacing) = (problem.cloud.points(), problem.cloud.spacing());
     let largest = spacing.iter().fold(0.0_f64, |a, &b| a.max(b));
     let index = CellList::new(points, CUT_OFF * width * largest)?;
+    let beyond = beyond(problem);
     let at = |found: &mut Vec<u32>, i: usize| {
         let (x, w) = (&points[i], width * spacing[i]);
         found.clear();
@@ -65,17 +86,17 @@ fn convolve<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<
             let offset: [f64; D] = std::array::from_fn(|k| x[k] - points[j][k]);
             let squared = offset.iter().map(|c| c * c).sum::<f64>();
             let g = spacing[j].powi(D as i32) * (-0.5 * squared / (w * w)).exp();
-            let region = problem.labels[j];
-            let place = sums.iter().position(|s| s.0 == region).unwrap_or_else(|| {
-                sums.push((region, 0.0, [0.0; D]));
-                sums.len() - 1
-            });
+            let derivative = offset.map(|c| -g * c / (w * w));
             mass += g;
-            sums[place].1 += g;
-            for k in 0..D {
-                let derivative = -g * offset[k] / (w * w);
-                slope[k] += derivative;
-                sums[place].2[k] += derivative;
+            (0..D).for_each(|k| slope[k] += derivative[k]);
+            let (other, share) = beyond[j].unwrap_or((problem.labels[j], 0.0));
+            for (region, share) in [(problem.labels[j], 1.0 - share), (other, share)] {
+                let place = sums.iter().position(|s| s.0 == region).unwrap_or_else(|| {
+                    sums.push((region, 0.0, [0.0; D]));
+                    sums.len() - 1
+                });
+                sums[place].1 += share * g;
+                (0..D).for_each(|k| sums[place].2[k] += share * derivative[k]);
             }
         }
         for (_, share, gradient) in &mut sums {
@@ -105,8 +126,14 @@ fn diffuse<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<V
     let step = 0.5 * width * width / steps;
     let regions = problem.materials.len();
     let mut fields = Vec::with_capacity(regions);
+    let beyond = beyond(problem);
     for region in 0..regions as u16 {
-        let mut u: Vec<f64> = problem.labels.iter().map(|&l| f64::from(u8::from(l == region))).collect();
+        let start = |(&label, other): (&u16, &Option<(u16, f64)>)| match *other {
+            Some((_, share)) if label == region => 1.0 - share,
+            Some((other, share)) if other == region => share,
+            _ => f64::from(u8::from(label == region)),
+        };
+        let mut u: Vec<f64> = problem.labels.iter().zip(&beyond).map(start).collect();
         for _ in 0..steps as usize {
             let mut next: Vec<f64> = (0..n)
                 .into_par_iter()
