@@ -46,6 +46,50 @@ pub fn composite(dimension: usize, spacing: f64, contrast: f64, tolerance: f64) 
     )
 }
 
+/// A slab at 0 whose left end is put to 1 at t = 0.1: `u = 1 - x - sum_n 2/(n pi) exp(-(n pi)^2 eta (t - 0.1)) sin(n pi x)`.
+pub fn switched(dimension: usize, spacing: f64, tolerance: f64) -> String {
+    use std::f64::consts::PI;
+    let eta = 0.3;
+    let mode = |n: u32| {
+        let k = f64::from(n) * PI;
+        format!(" - {}*exp(-{}*(t - 0.1))*sin({k}*x)", 2.0 / k, k * k * eta)
+    };
+    let exact = (1..=8).map(mode).fold("1 - x".to_owned(), |text, mode| text + &mode);
+    let ends = ends_at_zero(dimension).replacen("dirichlet = 0", "dirichlet = \"if(t < 0.1, 0, 1)\"", 1);
+    format!(
+        "title = \"Switched\"\ndimension = {dimension}\n{}[points]\nspacing = {spacing}\nseed = 1\n\n\
+         [[regions]]\nname = \"slab\"\ndiffusivity = {eta}\nexact = \"{exact}\"\n\n{ends}\
+         [time]\nend = 0.4\ntolerance = {tolerance}\n\n",
+        unit_box(dimension),
+    )
+}
+
+/// Another quadratic polynomial on each side of a slanted plane, each with its own factor in time: u and its flux jump by what
+/// depends on time and place. Exact in space for fits of degree 2.
+pub fn driven_contact(tolerance: f64) -> String {
+    let first = "cos(3*t)*(x^2 + 2*x + y)";
+    let second = "(1 + sin(2*t))*(x*y - y^2)";
+    let side = "x + 0.5*y - 0.72";
+    let (nx, ny) = (1.0 / 1.25_f64.sqrt(), 0.5 / 1.25_f64.sqrt());
+    let both = |a: &str, b: &str| format!("if({side} < 0, {a}, {b})");
+    format!(
+        "title = \"Driven contact\"\ndimension = 2\n{}[points]\nspacing = 0.1\nseed = 1\n\n\
+         [[regions]]\nname = \"first\"\nlevel_set = \"{side}\"\ndiffusivity = 1\n\
+         source = \"-3*sin(3*t)*(x^2 + 2*x + y) - 2*cos(3*t)\"\nexact = \"{first}\"\n\n\
+         [[regions]]\nname = \"second\"\ndiffusivity = 10\n\
+         source = \"2*cos(2*t)*(x*y - y^2) + 20*(1 + sin(2*t))\"\nexact = \"{second}\"\n\n\
+         [[interfaces]]\nbetween = [\"first\", \"second\"]\njump = \"{second} - {first}\"\n\
+         flux_jump = \"10*(1 + sin(2*t))*({nx}*y + {ny}*(x - 2*y)) - cos(3*t)*({nx}*(2*x + 2) + {ny})\"\n\n\
+         [[boundaries]]\nface = \"top\"\nneumann = \"{}\"\n\n\
+         [[boundaries]]\nface = \"all\"\ndirichlet = \"{}\"\n\n\
+         [time]\nend = 1.0\ntolerance = {tolerance}\ninitial = \"{}\"\n\n",
+        unit_box(2),
+        both("cos(3*t)", "(1 + sin(2*t))*(x - 2*y)"),
+        both(first, second),
+        both("x^2 + 2*x + y", "x*y - y^2"),
+    )
+}
+
 /// The smallest positive rate at which `eta_1 k_1 cot(k_1 a) + eta_2 k_2 cot(k_2 (1 - a))` vanishes, by bisection: the
 /// sum falls from infinity to minus infinity between 0 and the first pole of either term.
 fn composite_rate(a: f64, eta: [f64; 2]) -> f64 {
@@ -59,12 +103,11 @@ fn composite_rate(a: f64, eta: [f64; 2]) -> f64 {
             .sum()
     };
     let pole = |i: usize| eta[i] * (std::f64::consts::PI / lengths[i]).powi(2);
-    root(excess, pole(0).min(pole(1)))
+    root(excess, 0.0, pole(0).min(pole(1)))
 }
 
-/// The root between 0 and a pole of a function that falls, by bisection.
-fn root(excess: impl Fn(f64) -> f64, pole: f64) -> f64 {
-    let (mut low, mut high) = (0.0, pole);
+/// The root between two poles of a function that falls, by bisection.
+fn root(excess: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 { low = middle } else { high = middle }
@@ -83,7 +126,7 @@ pub fn sandwich(dimension: usize, spacing: f64, contrast: f64, tolerance: f64) -
         layer / (layer * a).tan() - contrast * core * (core * b).tan()
     };
     let poles = [(std::f64::consts::PI / a).powi(2), contrast * (std::f64::consts::FRAC_PI_2 / b).powi(2)];
-    let rate = root(excess, poles[0].min(poles[1]));
+    let rate = root(excess, 0.0, poles[0].min(poles[1]));
     let (core, layer) = ((rate / contrast).sqrt(), rate.sqrt());
     let top = (layer * a).sin() / (core * b).cos();
     let (side, middle) = (format!("sin({layer}*min(x, 1 - x))"), format!("{top}*cos({core}*(x - 0.5))"));

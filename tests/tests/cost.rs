@@ -62,3 +62,13 @@ fn a_method_that_cannot_solve_the_scene_says_why_in_its_runs() {
     assert!(steady.clone().count() == 5 && steady.clone().all(|r| r.error.is_none() && r.why.is_some()));
     assert!(report.runs.iter().any(|r| r.method == "gfdm-hybrid" && r.error.is_some()));
 }
+
+#[test]
+fn a_scene_with_time_is_compared_by_the_sharp_method_as_well() {
+    let scene = Scene::parse(&meshless_tests::unsteady::composite(1, 0.1, 10.0, 1e-3), "contact.toml");
+    let report = cost(&scene.expect("a scene"), &params(&[]), &mut |_| {}).expect("a report");
+    for order in [4, 6] {
+        let mut sharp = report.runs.iter().filter(|r| r.method == "sharp" && r.order == order);
+        assert!(sharp.any(|r| r.error.is_some()), "order {order}");
+    }
+}

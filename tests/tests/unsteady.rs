@@ -5,7 +5,7 @@ use std::time::Duration;
 use meshless::plan::{Plan, Stage};
 use meshless::scene::{MethodName, Scene};
 use meshless::{Checkpoint, Error, Progress, Silent, Solution, execute_from};
-use meshless_tests::order::observed;
+use meshless_tests::order::{observed, over_clouds};
 use meshless_tests::solve::{solve_scene, solve_with};
 use meshless_tests::unsteady::{ball, composite, driven, slab};
 
@@ -66,20 +66,25 @@ fn every_method_of_a_bounded_domain_steps_through_time() {
     }
 }
 
-/// The order that each method has where something jumps, in steady scenes, less a half for clouds that differ in more than
-/// their spacing; less a quarter of first order.
+/// Orders by theory, over three clouds a spacing. Immersed interfaces: ghosts and operators of second order. The other two
+/// are of first order: particle differences take the second derivative across an interface, which jumps in time, to be continuous, and
+/// surface reaction smears the kink over a width; both leave errors of their rows that do not fall with the spacing, in a
+/// layer as thick as it.
 #[test]
-fn the_order_at_a_contact_is_that_of_steady_scenes() {
-    for (name, least) in
-        [("immersed-interface", 1.5), ("particle-difference", 1.0), ("surface-reaction", 0.75)]
+fn the_order_at_a_contact_is_that_of_theory() {
+    for (name, order) in
+        [("immersed-interface", 2.0), ("particle-difference", 1.0), ("surface-reaction", 1.0)]
     {
         let method = MethodName::parse(name).expect("a method");
-        let run = |h: f64| (h, l2(&solve_with(&composite(2, h, 10.0, 1e-4), method).expect(name)));
-        let ladder = [0.1, 0.05, 0.025].map(run);
-        let order = observed(&ladder);
-        assert!(order > least, "{name}: order {order}, {ladder:?}");
-        let homogeneous = l2(&solve_with(&slab(2, 0.05, 1e-4), method).expect(name));
-        assert!(homogeneous < 0.01, "{name}: {homogeneous:e}");
+        let clouds = |h: f64| {
+            let seeded = |seed| composite(2, h, 10.0, 1e-4).replace("seed = 1", &format!("seed = {seed}"));
+            let errors = (1..=3).map(|seed| l2(&solve_with(&seeded(seed), method).expect(name)));
+            (h, errors.collect::<Vec<f64>>())
+        };
+        let ladder = [0.1, 0.05, 0.025].map(clouds);
+        let (found, deviation) = over_clouds(&ladder);
+        assert!(deviation < 0.25, "{name}: order {found} ± {deviation}, {ladder:?}");
+        assert!(found > order - 2.0 * deviation, "{name}: order {found} ± {deviation}, {ladder:?}");
     }
 }
 
@@ -98,16 +103,21 @@ fn two_materials_in_contact() {
     }
 }
 
+/// All that step.
+const EVERY_METHOD: [MethodName; 8] = [
+    MethodName::GfdmClassical,
+    MethodName::GfdmConservative,
+    MethodName::GfdmHybrid,
+    MethodName::GfdmPositive,
+    MethodName::ImmersedInterface,
+    MethodName::ParticleDifference,
+    MethodName::Sharp,
+    MethodName::SurfaceReaction,
+];
+
 #[test]
 fn every_method_steps() {
-    for method in [
-        MethodName::GfdmClassical,
-        MethodName::GfdmConservative,
-        MethodName::GfdmHybrid,
-        MethodName::GfdmPositive,
-        MethodName::ParticleDifference,
-        MethodName::Sharp,
-    ] {
+    for method in EVERY_METHOD {
         let error = l2(&solve_with(&slab(2, 0.05, 1e-4), method).expect("it can be solved"));
         assert!(error < 1e-2, "{method:?}: {error:e}");
     }
@@ -153,6 +163,26 @@ fn a_stopped_run_goes_on_to_the_same_result() {
         execute_from(&scene, &plan, Some(&checkpoint), &mut Silent),
         Err(Error::Checkpoint { .. })
     ));
+}
+
+#[test]
+fn runs_of_every_method_go_on_bit_for_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene = Scene::parse(&composite(2, 0.1, 10.0, 1e-3), "contact.toml").expect("it parses");
+    let end = scene.time.as_ref().expect("it is unsteady").end;
+    for method in EVERY_METHOD {
+        scene.method.name = method;
+        let mut plan = Plan::new(&scene).expect("it can be planned");
+        plan.stages.retain(|s| *s != Stage::Estimate);
+        let path = folder.path().join(format!("{}.ckpt", method.as_str()));
+        let checkpoint = Checkpoint { path, every: Duration::ZERO };
+        let through = execute_from(&scene, &plan, None, &mut Silent).expect("it can be solved");
+        let stopped = execute_from(&scene, &plan, Some(&checkpoint), &mut Until(0.4 * end));
+        assert!(matches!(stopped, Err(Error::Stopped { .. })), "{method:?}");
+        let resumed = execute_from(&scene, &plan, Some(&checkpoint), &mut Silent).expect("it can be solved");
+        let bits = |u: &[f64]| u.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+        assert_eq!(bits(&resumed.field.u), bits(&through.field.u), "{method:?}");
+    }
 }
 
 #[test]

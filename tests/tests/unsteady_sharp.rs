@@ -1,10 +1,10 @@
 //! The sharp method in time: its order in space, floating regions, gradients, data that change.
 
 use meshless::Solution;
-use meshless::scene::{MethodName, Scene};
+use meshless::scene::MethodName;
 use meshless_tests::order::observed;
 use meshless_tests::solve::solve_with;
-use meshless_tests::unsteady::{ball, composite, driven, sandwich, slab};
+use meshless_tests::unsteady::{ball, composite, driven, driven_contact, sandwich, slab, switched};
 
 /// Least order on a few coarse clouds that differ in more than their spacing: one less than that of the method.
 const LEAST: f64 = 3.0;
@@ -66,12 +66,23 @@ fn data_that_change() {
     assert!(errors[0] < 1e-3 && errors[1] < 1e-5, "{errors:?}");
 }
 
+/// Polynomials are exact in space on both sides.
 #[test]
-fn jumps_that_change_are_refused_with_their_place() {
-    let jump = "[[interfaces]]\nbetween = [\"left\", \"right\"]\nflux_jump = \"sin(t)\"\n\n";
-    let text = format!("{}{jump}", composite(2, 0.2, 10.0, 1e-3));
-    let mut scene = Scene::parse(&text, "contact.toml").expect("it parses");
-    scene.method.name = MethodName::Sharp;
-    let error = meshless::plan::Plan::new(&scene).expect_err("not possible").to_string();
-    assert!(error.contains("no jumps that change with time") && error.contains("flux_jump"), "{error}");
+fn jumps_that_change() {
+    for method in [MethodName::Sharp, MethodName::ImmersedInterface] {
+        let run = |tolerance| l2(&solve_with(&driven_contact(tolerance), method).expect("it can be solved"));
+        let errors = [1e-3, 1e-5].map(run);
+        assert!(errors[0] < 1e-3 && errors[1] < 1e-5, "{method:?}: {errors:?}");
+    }
+}
+
+/// The prescribed value jumps in the middle of the run: a new start from there. By their mass, nodes get a part of the jump at once:
+/// no more than what half a spacing beside the boundary holds.
+#[test]
+fn a_boundary_value_that_jumps() {
+    let spacing = 0.05;
+    for dimension in [1, 2] {
+        let error = l2(&solved(&switched(dimension, spacing, 1e-4)));
+        assert!(error < 0.5 * spacing, "{dimension}-D: {error:e}");
+    }
 }

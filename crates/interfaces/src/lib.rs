@@ -33,7 +33,7 @@
 //! let problem = Problem {
 //!     cloud: &cloud, domain: &domain, supports: Supports { lists: &lists, radius: &radius }, regions: &regions,
 //!     labels: &labels, materials: &materials, eta: &eta, source: None, conditions: &conditions,
-//!     boundary: &boundary, jumps: &[], slits: &[] };
+//!     boundary: &boundary, jumps: &[], jump_rates: &[], slits: &[] };
 //! let discretization = Gfdm { params: GfdmParams::conservative() }.discretize(&problem)?;
 //! let solution = solve(&problem, &discretization, &Default::default())?;
 //! // Nearly all of the drop is in the first material.

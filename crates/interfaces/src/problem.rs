@@ -100,6 +100,8 @@ pub struct Problem<'a, const D: usize> {
     pub boundary: &'a dyn BoundaryData<D>,
     /// Prescribed jumps.
     pub jumps: &'a [InterfaceJump<D>],
+    /// How fast they change, of those that change with time; empty in steady problems.
+    pub jump_rates: &'a [InterfaceJump<D>],
     /// Interfaces that end inside the domain.
     pub slits: &'a [SlitInterface<D>],
 }
@@ -188,17 +190,30 @@ impl<const D: usize> Problem<'_, D> {
 
     /// The prescribed jump between the regions of two nodes, with the sign that belongs to going from `from` to `to`.
     pub fn jump_between(&self, from: u16, to: u16) -> Option<(&InterfaceJump<D>, f64)> {
-        self.jumps.iter().find_map(|jump| match jump.between {
-            [a, b] if (a, b) == (from, to) => Some((jump, 1.0)),
-            [a, b] if (b, a) == (from, to) => Some((jump, -1.0)),
-            _ => None,
-        })
+        between(self.jumps, from, to)
+    }
+
+    /// How fast it changes, likewise.
+    pub fn jump_rate_between(&self, from: u16, to: u16) -> Option<(&InterfaceJump<D>, f64)> {
+        between(self.jump_rates, from, to)
     }
 
     /// Whether u is fixed somewhere: by a Dirichlet value, or by a Robin condition with `a != 0`.
     pub fn is_anchored(&self) -> bool {
         self.conditions.iter().flatten().any(Condition::anchors)
     }
+}
+
+fn between<const D: usize>(
+    jumps: &[InterfaceJump<D>],
+    from: u16,
+    to: u16,
+) -> Option<(&InterfaceJump<D>, f64)> {
+    jumps.iter().find_map(|jump| match jump.between {
+        [a, b] if (a, b) == (from, to) => Some((jump, 1.0)),
+        [a, b] if (b, a) == (from, to) => Some((jump, -1.0)),
+        _ => None,
+    })
 }
 
 impl Condition {

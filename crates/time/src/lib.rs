@@ -1,9 +1,10 @@
 //! Adaptive implicit time steps for `M du/dt + A(t) u = b(t)`, as space discretisations of diffusion leave it.
 //!
-//! For: linear stiff systems of any size, with a diagonal mass matrix M that may have zeros (algebraic rows: prescribed
-//! values and boundary conditions). The caller implements [`Semidiscrete`], with the linear solver of their choice.
+//! For: linear stiff systems of any size, with a mass matrix M that may have zero rows (algebraic rows: prescribed values and
+//! boundary conditions). The caller implements [`Semidiscrete`], with the linear solver of their choice. Where M is not
+//! diagonal, values have to fulfil the algebraic rows from the start: [`Semidiscrete::make_consistent`].
 //!
-//! Not for: right-hand sides that are not linear, or mass matrices that are not diagonal.
+//! Not for: right-hand sides that are not linear, or algebraic rows that do not determine their unknowns (index 2).
 //!
 //! The method is TR-BDF2 (Bank et al. 1985; Hosea and Shampine 1996, "Analysis and implementation of TR-BDF2"): order
 //! 2, L-stable, stiffly accurate, with an embedded error estimate of order 3. Both implicit stages have the same matrix

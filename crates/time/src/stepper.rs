@@ -24,6 +24,8 @@ const FIRST_OF_ALL: f64 = 1e-3;
 const SAME: f64 = 1e-9;
 /// Steps below this part of the time reached do not change it reliably.
 const SMALLEST: f64 = 1e-13;
+/// What jumps again within this part of the time reached is not data that jump.
+const APART: f64 = 1e-9;
 
 /// Integrates a [`Semidiscrete`] system.
 #[derive(Debug)]
@@ -31,6 +33,8 @@ pub struct Stepper<S> {
     system: S,
     params: Params,
     state: State,
+    /// When the run was last started anew.
+    started: f64,
 }
 
 /// A tried step.
@@ -41,24 +45,34 @@ struct Trial {
 }
 
 impl<S: Semidiscrete> Stepper<S> {
-    /// Starts at `t` from `u`, which need not satisfy the algebraic rows.
+    /// Starts at `t` from `u`, which need not satisfy the algebraic rows: see [`Semidiscrete::make_consistent`].
     ///
     /// # Errors
     /// [`StepError::Invalid`] for a tolerance or a first step that is not positive, and initial values that are not
     /// finite; those of the system.
-    pub fn new(mut system: S, t: f64, u: Vec<f64>, params: Params) -> Result<Self, StepError<S::Error>> {
+    pub fn new(system: S, t: f64, u: Vec<f64>, params: Params) -> Result<Self, StepError<S::Error>> {
         check(&params, t, &u)?;
-        let mut slope = vec![0.0; u.len()];
-        system.slope(t, &u, &mut slope).map_err(|source| StepError::System { t, source })?;
-        let scale = system.norm(&u);
-        let step = params.first_step.unwrap_or(0.0);
-        let state = State { t, step, u, slope, scale, steps: 0, rejected: 0 };
-        Ok(Self { system, params, state })
+        let slope = vec![0.0; u.len()];
+        let state = State { t, step: 0.0, u, slope, scale: 0.0, steps: 0, rejected: 0 };
+        let mut stepper = Self { system, params, state, started: t };
+        stepper.start(t).map_err(|source| StepError::System { t, source })?;
+        Ok(stepper)
+    }
+
+    /// Starts anew at `t` from the values reached.
+    fn start(&mut self, t: f64) -> Result<(), S::Error> {
+        let state = &mut self.state;
+        self.system.make_consistent(t, &mut state.u)?;
+        self.system.slope(t, &state.u, &mut state.slope)?;
+        state.scale = state.scale.max(self.system.norm(&state.u));
+        (state.t, self.started) = (t, t);
+        state.step = self.params.first_step.unwrap_or(0.0);
+        Ok(())
     }
 
     /// Goes on from a state that was kept.
     pub fn resume(system: S, state: State, params: Params) -> Self {
-        Self { system, params, state }
+        Self { system, params, state, started: f64::NEG_INFINITY }
     }
 
     /// Where the integration stands.
@@ -92,14 +106,14 @@ impl<S: Semidiscrete> Stepper<S> {
     /// # Errors
     /// [`StepError::TooSmall`] and [`StepError::TooMany`] where the tolerance cannot be reached, those of the system.
     pub fn step(&mut self, end: f64) -> Result<(), StepError<S::Error>> {
-        let t = self.state.t;
-        if t >= end {
+        if self.state.t >= end {
             return Ok(());
         }
-        if self.state.step <= 0.0 {
-            self.state.step = self.first_step(end - t);
-        }
         loop {
+            let t = self.state.t;
+            if self.state.step <= 0.0 {
+                self.state.step = self.first_step(end - t);
+            }
             if self.state.steps + self.state.rejected >= self.params.max_steps {
                 return Err(StepError::TooMany { steps: self.params.max_steps, t });
             }
@@ -111,7 +125,13 @@ impl<S: Semidiscrete> Stepper<S> {
             let step = if same { self.state.step } else { even };
             let next = if count == 1.0 { end } else { t + step };
             if step <= SMALLEST * t.abs().max(end.abs()) {
-                return Err(StepError::TooSmall { t, step });
+                // Data jump within the step that was rejected last: what follows starts behind it.
+                let behind = t + step / MOST_SHRINKAGE;
+                if t - self.started <= APART * end.abs() || behind >= end {
+                    return Err(StepError::TooSmall { t, step });
+                }
+                self.start(behind).map_err(|source| StepError::System { t: behind, source })?;
+                continue;
             }
             let trial = self.attempt(t, next, step).map_err(|source| StepError::System { t, source })?;
             if !trial.error.is_finite() {

@@ -1,9 +1,18 @@
 //! What is integrated.
 
-/// A system `M du/dt + A(t) u = b(t)` with a diagonal mass matrix M; rows without mass are algebraic.
+/// A system `M du/dt + A(t) u = b(t)` with a mass matrix M; rows without mass are algebraic.
 pub trait Semidiscrete {
     /// What can go wrong in a solve.
     type Error: std::error::Error;
+
+    /// Changes values at the start, or just after data have jumped, so that they fulfil the algebraic rows. Without
+    /// effect unless a system needs it: one whose algebraic rows get no part in the others by M.
+    ///
+    /// # Errors
+    /// Those of the linear solver, and of evaluating the data at `t`.
+    fn make_consistent(&mut self, _t: f64, _u: &mut [f64]) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
     /// `M^-1 (b(t) - A(t) u)`; zero in algebraic rows.
     ///

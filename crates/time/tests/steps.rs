@@ -134,3 +134,51 @@ proptest! {
         prop_assert!((sum + zero - end(a) - end(b)).abs() < 1e-12);
     }
 }
+
+/// `u_0' + 0.3 u_1' = u_1 - u_0`, and `u_1` is prescribed: 0 up to t = 0.5 and 1 from there on.
+struct Switched;
+
+impl Switched {
+    fn given(t: f64) -> f64 {
+        f64::from(u8::from(t >= 0.5))
+    }
+}
+
+impl Semidiscrete for Switched {
+    type Error = Infallible;
+
+    fn make_consistent(&mut self, t: f64, u: &mut [f64]) -> Result<(), Infallible> {
+        u[1] = Self::given(t);
+        Ok(())
+    }
+
+    fn slope(&mut self, _t: f64, u: &[f64], out: &mut [f64]) -> Result<(), Infallible> {
+        out.copy_from_slice(&[u[1] - u[0], 0.0]);
+        Ok(())
+    }
+
+    fn solve(&mut self, t: f64, c: f64, v: &[f64], u: &mut [f64]) -> Result<(), Infallible> {
+        u[1] = Self::given(t);
+        u[0] = ((v[0] + 0.3 * (v[1] - u[1])) / c + u[1]) / (1.0 / c + 1.0);
+        Ok(())
+    }
+
+    fn damp(&mut self, _t: f64, c: f64, e: &mut [f64]) -> Result<(), Infallible> {
+        e.copy_from_slice(&[e[0] / (1.0 + c), 0.0]);
+        Ok(())
+    }
+
+    fn norm(&self, e: &[f64]) -> f64 {
+        e[0].abs()
+    }
+}
+
+/// What jumps gets no part in the other rows: the run starts anew behind the jump.
+#[test]
+fn data_that_jump_start_the_run_anew() {
+    let params = Params { tolerance: 1e-5, whole: 1.0, ..Params::default() };
+    let mut stepper = Stepper::new(Switched, 0.0, vec![0.0, 0.0], params).expect("valid");
+    stepper.advance_to(1.0).expect("within the steps");
+    let error = stepper.state().u[0] - (1.0 - (-0.5_f64).exp());
+    assert!(error.abs() < 1e-5, "{error:e}");
+}

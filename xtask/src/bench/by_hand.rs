@@ -40,6 +40,7 @@ pub(super) fn laplace(plan: &Plan) -> Result<Vec<f64>, Box<dyn std::error::Error
         conditions: &conditions,
         boundary: &boundary,
         jumps: &[],
+        jump_rates: &[],
         slits: &[],
     };
     let discretization = plan.method.params.build().discretize(&problem)?;

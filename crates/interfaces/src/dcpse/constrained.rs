@@ -165,9 +165,9 @@ impl<'a, const D: usize> ConstrainedGhosts<'a, D> {
         self.directional(&foot.normal, -own.eta / scale, &mut row[..n]);
         self.directional(&foot.normal, other.eta / scale, &mut row[n..]);
         if self.unsteady {
-            // du/dt is the same on both sides, and all that is known of it.
+            // How du/dt jumps is all that is known of it.
             let [from, to] = [own.eta / scale, other.eta / scale];
-            let row = scratch.constrain(to * other.rhs - from * own.rhs);
+            let row = scratch.constrain(to * other.rhs - from * own.rhs + jump.rate);
             self.operator(&own, -from, &mut row[..n]);
             self.operator(&other, to, &mut row[n..]);
         } else {

@@ -2,7 +2,7 @@
 
 use meshless_geometry::Projection;
 
-use crate::{Field, Material, Problem};
+use crate::{Field, InterfaceJump, Material, Problem};
 
 /// Step of central differences for fields that know no gradient, relative to the spacing.
 const GRADIENT_STEP: f64 = 1e-3;
@@ -28,6 +28,8 @@ pub(super) struct LocalJump<const D: usize> {
     pub(super) value: f64,
     pub(super) gradient: [f64; D],
     pub(super) flux: f64,
+    /// How fast the value jumps ever more, in the unit of the equations weighted by their diffusivities.
+    pub(super) rate: f64,
 }
 
 /// The foot of node `q` on the interface between regions `own` and one other that its support shows.
@@ -72,7 +74,10 @@ pub(super) fn jump<const D: usize>(
     scale: f64,
 ) -> LocalJump<D> {
     let (x, h) = (&foot.point, foot.spacing);
-    let mut local = LocalJump { value: 0.0, gradient: [0.0; D], flux: 0.0 };
+    let mut local = LocalJump { value: 0.0, gradient: [0.0; D], flux: 0.0, rate: 0.0 };
+    if let Some((InterfaceJump { value: Some(rate), .. }, sign)) = problem.jump_rate_between(from, to) {
+        local.rate = sign * rate.at(x) * h * h / scale;
+    }
     let Some((jump, sign)) = problem.jump_between(from, to) else { return local };
     if let Some(value) = &jump.value {
         local.value = sign * value.at(x);

@@ -4,7 +4,7 @@ use meshless_neighbors::CellList;
 use rayon::prelude::*;
 
 use super::unknowns::Unknowns;
-use crate::{Field, MethodError, Problem};
+use crate::{Field, InterfaceJump, MethodError, Problem};
 
 /// Least distance between two points of an interface, in spacings of the cloud. Candidates lie densely, so that gaps are
 /// at most twice as long; distances of 0.3 to 1.2 serve as well, 2.5 is too far.
@@ -46,6 +46,15 @@ pub(super) struct InterfacePoint<const D: usize> {
     pub(super) value: f64,
     /// `(eta du/dn)_1 - (eta du/dn)_0`.
     pub(super) flux: f64,
+    /// How fast both change with time.
+    pub(super) rates: [f64; 2],
+}
+
+impl<const D: usize> InterfacePoint<D> {
+    /// The larger diffusivity.
+    pub(super) fn largest(&self) -> f64 {
+        self.sides[0].eta.max(self.sides[1].eta)
+    }
 }
 
 /// All interfaces.
@@ -163,15 +172,21 @@ fn point<const D: usize>(
         Ok(Side { part, eta, slope, source })
     };
     let sides = [side(first, labels[0])?, side(second, labels[1])?];
-    let jump = problem.jump_between(labels[0], labels[1]);
-    let given = |field: Option<&Field<D>>| field.map_or(0.0, |f| f.at(at));
-    // The normal of the scene's entry may point the other way: then u jumps by the opposite, and the flux, whose sign
-    // turns with the normal as well as with the order of the sides, by the same.
-    let value = jump.map_or(0.0, |(jump, sign)| sign * given(jump.value.as_ref()));
-    let flux = jump.map_or(0.0, |(jump, _)| given(jump.flux.as_ref()));
+    let [value, flux] = jumps(problem.jump_between(labels[0], labels[1]), at);
     finite(value, "jump of u", at)?;
     finite(flux, "jump of the flux", at)?;
-    Ok(Some(InterfacePoint { normal: *normal, sides, value, flux }))
+    let rates = jumps(problem.jump_rate_between(labels[0], labels[1]), at);
+    finite(rates[0], "rate of the jump of u", at)?;
+    finite(rates[1], "rate of the jump of the flux", at)?;
+    Ok(Some(InterfacePoint { normal: *normal, sides, value, flux, rates }))
+}
+
+/// The jump of u and that of its flux. The normal of the scene's entry may point the other way: then u jumps by the opposite,
+/// and the flux, whose sign turns with the normal as well as with the order of the sides, by the same.
+fn jumps<const D: usize>(jump: Option<(&InterfaceJump<D>, f64)>, at: &[f64; D]) -> [f64; 2] {
+    let Some((jump, sign)) = jump else { return [0.0; 2] };
+    let given = |field: Option<&Field<D>>| field.map_or(0.0, |f| f.at(at));
+    [sign * given(jump.value.as_ref()), given(jump.flux.as_ref())]
 }
 
 fn finite<const D: usize>(value: f64, what: &str, at: &[f64; D]) -> Result<(), MethodError> {

@@ -190,9 +190,12 @@ impl<'a, const D: usize> Maker<'a, D> {
         let enlarged = self.factor(i, scratch)?;
         let Scratch { stencil, fit, combination, rates, mass } = scratch;
         mass.clear();
+        let mut known = combination.known;
         if let Some(polynomials) = &self.rates {
             polynomials.of_value(self, stencil, fit, rates, mass);
-            if combination.unit_source <= 0.0 {
+            if combination.unit_source > 0.0 {
+                known -= rates.known;
+            } else {
                 // No stencil has it right: an equation without du/dt.
                 mass.fill(0.0);
             }
@@ -222,7 +225,7 @@ impl<'a, const D: usize> Maker<'a, D> {
                 }
             }
         }
-        let rhs = factor * combination.known;
+        let rhs = factor * known;
         Ok(Row {
             node: i,
             neighbors,

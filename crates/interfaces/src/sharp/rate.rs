@@ -46,6 +46,8 @@ pub(super) struct RateFit<const D: usize> {
     answers: Vec<f64>,
     z: Vec<f64>,
     factors: Vec<f64>,
+    /// What jumps that change with time add to the functional that was asked for last.
+    pub(super) known: f64,
 }
 
 impl<const D: usize> Rates<D> {
@@ -114,6 +116,14 @@ impl<const D: usize> RateFit<D> {
         self.qr.least_norm(&self.answers, &mut self.z, &mut self.factors);
         out.clear();
         out.extend(self.factors.iter().zip(&self.weights).map(|(f, w)| f * w));
+        let of_points = self.factors[stencil.nodes.len()..].chunks_exact(2).zip(&stencil.points);
+        let weight = maker.params.jump_weight;
+        let known = of_points.map(|(factors, &(index, _))| {
+            let point = &maker.interfaces.points[index as usize];
+            let flux = stencil.radius * point.rates[1] / point.largest();
+            weight * (factors[0] * point.rates[0] + factors[1] * flux)
+        });
+        self.known = known.sum();
     }
 
     /// What the functional answers to `-du/dt` in place of f, for every monomial of every part; on the left-hand side.
@@ -169,7 +179,7 @@ impl<const D: usize> RateFit<D> {
         for (k, &(index, places)) in stencil.points.iter().enumerate() {
             let point = &maker.interfaces.points[index as usize];
             let row = stencil.nodes.len() + 2 * k;
-            let largest = point.sides[0].eta.max(point.sides[1].eta);
+            let largest = point.largest();
             level.rates.evaluate(&local(&maker.interfaces.places[index as usize]), &mut self.jet);
             for (s, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 let strength = sign * weight * point.sides[s].eta / largest;

@@ -165,6 +165,7 @@ impl<const D: usize> Maker<'_, D> {
             polynomials.of_any(self, stencil, fit, rates, mass);
             known -=
                 stencil.nodes.iter().zip(&*mass).map(|(&j, m)| m * values.rates[j as usize]).sum::<f64>();
+            known -= rates.known;
         }
         let nodes = stencil.nodes.iter().zip(&combination.values).map(|(&j, h)| h * values.w[j as usize]);
         let parts = stencil.parts.iter().zip(&combination.constants);

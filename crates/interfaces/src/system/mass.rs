@@ -1,10 +1,9 @@
 //! The mass of rows in time: `M du/dt + A u = b`.
 
-use meshless_sparse::{DifferenceMatrix, SolverKind, SolverParams};
+use meshless_sparse::DifferenceMatrix;
 
-use super::{PreparedSystem, SystemParams};
 use crate::method::SplitRows;
-use crate::{Discretization, MethodError, Problem, RowKind};
+use crate::{Discretization, MethodError, RowKind};
 
 /// M of a discretisation.
 #[derive(Debug, Clone)]
@@ -18,13 +17,15 @@ pub enum Mass {
 /// M that is not diagonal.
 #[derive(Debug, Clone)]
 pub struct MassRows {
-    nodal: DifferenceMatrix,
+    pub(super) nodal: DifferenceMatrix,
+    /// Rows without du/dt, those of prescribed values aside.
+    pub(super) algebraic: Vec<bool>,
     /// The same rows over `w`, and their columns of the constants, for methods that split these off.
-    split: Option<(DifferenceMatrix, Columns)>,
+    pub(super) split: Option<(DifferenceMatrix, Columns)>,
 }
 
 /// Entries of each column: row, value.
-type Columns = Vec<Vec<(u32, f64)>>;
+pub(super) type Columns = Vec<Vec<(u32, f64)>>;
 
 impl Mass {
     /// The mass of all rows.
@@ -50,7 +51,10 @@ impl Mass {
             }
             None => None,
         };
-        Ok(Self::Rows(Box::new(MassRows { nodal: nodal.clone(), split })))
+        let none = |i: usize| nodal.row_sum(i) == 0.0 && nodal.row(i).1.iter().all(|&m| m == 0.0);
+        let kinds = discretization.kinds.iter().enumerate();
+        let algebraic = kinds.map(|(i, &kind)| kind != RowKind::Dirichlet && none(i)).collect();
+        Ok(Self::Rows(Box::new(MassRows { nodal: nodal.clone(), algebraic, split })))
     }
 
     /// `M v`.
@@ -109,40 +113,6 @@ impl Mass {
             _ => None,
         };
         Ok((shifted, constants))
-    }
-
-    /// The rates with `M du/dt = r`, where those of the nodes whose values are prescribed are given; zero in algebraic rows.
-    ///
-    /// # Errors
-    /// Those of the solver.
-    pub fn rates<const D: usize>(
-        &self,
-        problem: &Problem<'_, D>,
-        kinds: &[RowKind],
-        residual: &[f64],
-        prescribed: &[f64],
-        solver: &SolverParams,
-    ) -> Result<Vec<f64>, MethodError> {
-        let rows = match self {
-            Self::Diagonal(mass) => {
-                let rate = |(m, r): (&f64, &f64)| if *m > 0.0 { r / m } else { 0.0 };
-                return Ok(mass.iter().zip(residual).map(rate).collect());
-            }
-            Self::Rows(rows) => rows,
-        };
-        let prescribed_at = |i: usize| kinds[i] == RowKind::Dirichlet;
-        let algebraic =
-            |i: usize| rows.nodal.row_sum(i) == 0.0 && rows.nodal.row(i).1.iter().all(|&m| m == 0.0);
-        let known: Vec<bool> = (0..kinds.len()).map(|i| prescribed_at(i) || algebraic(i)).collect();
-        // The diagonal outweighs the rest: multigrid has nothing to do here.
-        let kind = match solver.kind {
-            SolverKind::Direct => SolverKind::Direct,
-            _ => SolverKind::Gmres { restart: 30 },
-        };
-        let params = SystemParams { solver: SolverParams { kind, ..*solver }, split_floating: false };
-        let rhs: Vec<f64> =
-            (0..known.len()).map(|i| if known[i] { prescribed[i] } else { residual[i] }).collect();
-        Ok(PreparedSystem::new(problem, rows.nodal.clone(), &known, &params)?.solve(&rhs)?.0)
     }
 }
 

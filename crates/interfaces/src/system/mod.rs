@@ -1,5 +1,6 @@
 //! The layer below all methods: prescribed values, floating constants, the linear solver.
 
+mod consistent;
 mod floating;
 mod given;
 mod linear;

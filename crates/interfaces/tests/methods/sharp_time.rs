@@ -92,3 +92,39 @@ fn steady_fields_stay() {
         }
     }
 }
+
+/// Rows without du/dt hold after the values of their nodes have been solved for; no other value changes.
+#[test]
+fn initial_values_are_made_consistent() {
+    let mut all = 0;
+    for (contrast, shape) in [
+        (1e6, Shape::half_space([0.4, 0.5], [1.0, 0.0]).unwrap()),
+        (1e-6, Shape::half_space([0.4, 0.5], [1.0, 0.0]).unwrap()),
+        (1e-6, Shape::ball([0.47, 0.52], 0.27).unwrap()),
+    ] {
+        let setup = Setup::<2>::generated(unit(), Layout::Irregular, 0.09, 1)
+            .regions(vec![Some(shape), None], &[1.0, contrast])
+            .conditions(|_, x| Condition::Dirichlet(x[0]));
+        let problem = setup.problem();
+        let rows = sharp(4).discretize(&problem).unwrap();
+        let mass = Mass::of(&rows).unwrap();
+        let given = |i: usize, x: &[f64; 2]| match rows.kinds[i] {
+            RowKind::Dirichlet => x[0],
+            _ => (i as f64 * 0.618).fract(),
+        };
+        let u: Vec<f64> = setup.cloud.points().iter().enumerate().map(|(i, x)| given(i, x)).collect();
+        let found = mass.consistent(&problem, &rows, &u, &SystemParams::default().solver).unwrap();
+        let left = residual(&rows, &found).unwrap();
+        let algebraic: Vec<usize> = mass.algebraic().collect();
+        all += algebraic.len();
+        for i in 0..u.len() {
+            if algebraic.contains(&i) {
+                let row: f64 = rows.rows.row(i).1.iter().map(|a| a.abs()).sum();
+                assert!(left[i].abs() < 1e-9 * row, "{contrast:e}: {:e}", left[i]);
+            } else {
+                assert!((found[i] - u[i]).abs() < 1e-9, "{contrast:e}: {} and {}", found[i], u[i]);
+            }
+        }
+    }
+    assert!(all > 0, "no row is without du/dt");
+}

@@ -130,6 +130,7 @@ impl<const D: usize> Setup<D> {
             conditions: &self.conditions,
             boundary: self,
             jumps: &self.jumps,
+            jump_rates: &[],
             slits: &self.slits,
         }
     }

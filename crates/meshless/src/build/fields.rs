@@ -64,9 +64,6 @@ fn at_points<const D: usize>(given: &PointValues) -> Option<Field<D>> {
 
 /// The prescribed jumps that are not zero everywhere.
 pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
-    let nonzero = |f: &Option<ExprField>| {
-        f.as_ref().filter(|f| f.expr.as_constant() != Some(0.0)).map(|f| field(&f.expr))
-    };
     scene
         .interfaces
         .iter()
@@ -78,6 +75,25 @@ pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
         })
         .filter(|j| j.value.is_some() || j.flux.is_some() || j.prescribed.is_some())
         .collect()
+}
+
+/// How fast they change, in a scene as it is at one time.
+pub(crate) fn jump_rates<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
+    scene
+        .interfaces
+        .iter()
+        .map(|i| InterfaceJump {
+            between: i.between.map(|r| r as u16),
+            value: nonzero(&i.rates[0]),
+            flux: nonzero(&i.rates[1]),
+            prescribed: None,
+        })
+        .filter(|j| j.value.is_some() || j.flux.is_some())
+        .collect()
+}
+
+fn nonzero<const D: usize>(f: &Option<ExprField>) -> Option<Field<D>> {
+    f.as_ref().filter(|f| f.expr.as_constant() != Some(0.0)).map(|f| field(&f.expr))
 }
 
 /// The diffusivity at every node, positive and finite.

@@ -27,6 +27,9 @@ const FREE_SPACE: [Candidate; 4] = [
 /// Orders of the sharp method by dimension.
 const SHARP: [&[usize]; 3] = [&[4, 6, 8], &[4, 6, 8], &[4, 6]];
 
+/// The same in time: beyond them masses are of a lower order near interfaces.
+const SHARP_IN_TIME: [usize; 2] = [4, 6];
+
 /// Orders of plain stencils where nothing jumps.
 const STENCILS: [usize; 3] = [2, 4, 6];
 
@@ -60,9 +63,8 @@ fn all(scene: &Scene, plan: &Plan) -> Vec<Candidate> {
     } else {
         STENCILS.iter().map(|&order| of(GfdmClassical, Some(order))).collect()
     };
-    if scene.time.is_none() {
-        all.extend(SHARP[scene.dimension - 1].iter().map(|&order| of(Sharp, Some(order))));
-    }
+    let orders = if scene.time.is_some() { &SHARP_IN_TIME[..] } else { SHARP[scene.dimension - 1] };
+    all.extend(orders.iter().map(|&order| of(Sharp, Some(order))));
     all
 }
 

@@ -30,6 +30,7 @@ pub(crate) struct Discrete<const D: usize> {
     boundary: Boundary<D>,
     conditions: Vec<Vec<Condition>>,
     jumps: Vec<InterfaceJump<D>>,
+    jump_rates: Vec<InterfaceJump<D>>,
     slits: Vec<SlitInterface<D>>,
 }
 
@@ -99,7 +100,7 @@ impl<const D: usize> Discrete<D> {
             .transpose()?;
         let boundary = Boundary::new(scene, &domain);
         let conditions = boundary.at_nodes(scene, &cloud)?;
-        let jumps = build::jumps::<D>(scene);
+        let (jumps, jump_rates) = (build::jumps::<D>(scene), build::jump_rates::<D>(scene));
         let slits = build::slits(scene, &domain)?;
         seconds.stencils = start.elapsed().as_secs_f64();
         Ok(Self {
@@ -115,6 +116,7 @@ impl<const D: usize> Discrete<D> {
             boundary,
             conditions,
             jumps,
+            jump_rates,
             slits,
         })
     }
@@ -131,6 +133,7 @@ impl<const D: usize> Discrete<D> {
         self.boundary = Boundary::new(scene, &self.domain);
         self.conditions = self.boundary.at_nodes(scene, &self.cloud)?;
         self.jumps = build::jumps::<D>(scene);
+        self.jump_rates = build::jump_rates::<D>(scene);
         self.slits = build::slits(scene, &self.domain)?;
         Ok(())
     }
@@ -156,6 +159,7 @@ impl<const D: usize> Discrete<D> {
             conditions: &self.conditions,
             boundary: &self.boundary as &dyn BoundaryData<D>,
             jumps: &self.jumps,
+            jump_rates: &self.jump_rates,
             slits: &self.slits,
         }
     }

@@ -51,6 +51,12 @@ impl ExprField {
         self.expr.depends_on(dimension)
     }
 
+    /// How fast it changes at one time; `None` where it does not depend on it.
+    pub(super) fn rate_at_time(&self, dimension: usize, t: f64) -> Option<Self> {
+        let rate = || self.expr.derivative(dimension).with_value(dimension, t);
+        self.varies_in_time(dimension).then(|| Self { expr: rate(), ..self.clone() })
+    }
+
     /// The field at one time.
     pub(super) fn at_time(&self, dimension: usize, t: f64) -> Self {
         Self { expr: self.expr.with_value(dimension, t), ..self.clone() }

@@ -104,6 +104,7 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
             jump: table.get("jump").map(|value| value.data_expression()).transpose()?,
             flux_jump: table.get("flux_jump").map(|value| value.data_expression()).transpose()?,
             flux_jump_at: flux_jump_at(&table)?,
+            rates: [None, None],
             dirichlet: dirichlet(&table)?,
             place: table.place,
         });

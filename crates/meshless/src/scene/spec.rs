@@ -204,6 +204,8 @@ pub struct InterfaceSpec {
     pub flux_jump: Option<ExprField>,
     /// The same at points of the interface, linear in between, in place of an expression.
     pub flux_jump_at: Option<PointValues>,
+    /// How fast `jump` and `flux_jump` change, where they do, in the scene as it is at one time.
+    pub(crate) rates: [Option<ExprField>; 2],
     /// u on the interface, in place of all of these.
     pub dirichlet: Option<ExprField>,
     /// The table in the file.

@@ -74,7 +74,8 @@ impl Scene {
             *diffusivity = at(diffusivity);
             [source, exact].into_iter().flatten().for_each(|field| *field = at(field));
         }
-        for InterfaceSpec { jump, flux_jump, .. } in &mut scene.interfaces {
+        for InterfaceSpec { jump, flux_jump, rates, .. } in &mut scene.interfaces {
+            *rates = [&*jump, &*flux_jump].map(|field| field.as_ref()?.rate_at_time(d, t));
             [jump, flux_jump].into_iter().flatten().for_each(|field| *field = at(field));
         }
         let condition_at = |condition: &mut ConditionSpec| match condition {
@@ -120,6 +121,7 @@ impl Scene {
         }
         for interface in &self.interfaces {
             data.extend([&interface.jump, &interface.flux_jump].into_iter().flatten());
+            data.extend(interface.rates.iter().flatten());
         }
         let mut conditions: Vec<&ConditionSpec> = self.boundaries.iter().map(|b| &b.condition).collect();
         for slit in &self.slits {

@@ -5,7 +5,7 @@ mod system;
 
 use std::time::Instant;
 
-use meshless_interfaces::{RowKind, SystemSolution};
+use meshless_interfaces::SystemSolution;
 use meshless_time::{Params, StepError, Stepper};
 
 use super::{Discrete, Progress, Solved};
@@ -109,7 +109,7 @@ fn stepper_time<const D: usize>(stepper: &Stepper<Heat<'_, D>>) -> f64 {
     stepper.state().t
 }
 
-/// The initial values; where u is prescribed, what is prescribed counts.
+/// The initial values. Where u is prescribed, what is prescribed will count.
 fn initial<const D: usize>(time: &TimeSpec, heat: &Heat<'_, D>) -> Result<Vec<f64>, Error> {
     let points = heat.discrete().cloud.points();
     let mut u = vec![0.0; points.len()];
@@ -120,12 +120,8 @@ fn initial<const D: usize>(time: &TimeSpec, heat: &Heat<'_, D>) -> Result<Vec<f6
             return Err(place.error(message, "it must be finite at every node").into());
         }
     }
-    let discretization = heat.discretization();
-    for (i, kind) in discretization.kinds.iter().enumerate() {
-        if *kind == RowKind::Dirichlet {
-            u[i] = discretization.rhs[i];
-        }
-    }
+    // What else is unknown follows from the nodes.
+    u.resize(heat.unknowns(), 0.0);
     Ok(u)
 }
 

@@ -88,10 +88,6 @@ impl<'a, const D: usize> Heat<'a, D> {
         &self.discrete
     }
 
-    pub(super) fn discretization(&self) -> &Discretization {
-        &self.discretization
-    }
-
     /// The discretisation at `end`, how the last system was solved, and what it took.
     pub(super) fn into_parts(
         mut self,
@@ -168,9 +164,10 @@ impl<'a, const D: usize> Heat<'a, D> {
         known
     }
 
-    /// Rates of the prescribed values at a time, by their difference over a share of the whole.
-    fn prescribed_rates(&self, t: f64) -> Result<Vec<f64>, Error> {
-        let mut rates = vec![0.0; self.nodes()];
+    /// Rates of the prescribed values at a time, and of what algebraic rows leave over at `u`, by their difference over a
+    /// share of the whole.
+    fn given_rates(&mut self, t: f64, u: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut rates = vec![0.0; self.unknowns()];
         let Some(time) = self.scene.time.as_ref().filter(|_| self.varying.data) else { return Ok(rates) };
         let step = RATE_STEP * time.end;
         let mut sides =
@@ -179,6 +176,13 @@ impl<'a, const D: usize> Heat<'a, D> {
             for (rate, (a, b)) in rates.iter_mut().zip(now.iter().zip(&later)) {
                 *rate = a.zip(*b).map_or(0.0, |(a, b)| (b - a) / step);
             }
+        }
+        if self.mass.algebraic().next().is_some() {
+            let now = residual(&self.discretization, u)?;
+            self.move_to(t + step)?;
+            let later = residual(&self.discretization, u)?;
+            self.move_to(t)?;
+            self.mass.algebraic().for_each(|i| rates[i] = (later[i] - now[i]) / step);
         }
         Ok(rates)
     }
@@ -206,12 +210,23 @@ fn discretize<const D: usize>(
 impl<const D: usize> Semidiscrete for Heat<'_, D> {
     type Error = Error;
 
+    fn make_consistent(&mut self, t: f64, u: &mut [f64]) -> Result<(), Error> {
+        self.move_to(t)?;
+        let kinds = self.discretization.kinds.iter().enumerate();
+        let prescribed = kinds.filter(|(_, kind)| **kind == RowKind::Dirichlet);
+        prescribed.for_each(|(i, _)| u[i] = self.discretization.rhs[i]);
+        let problem = self.discrete.problem();
+        let values = self.mass.consistent(&problem, &self.discretization, u, &self.plan.solver);
+        u.copy_from_slice(&values.map_err(|e| self.discrete.explain(self.scene, e))?);
+        Ok(())
+    }
+
     fn slope(&mut self, t: f64, u: &[f64], out: &mut [f64]) -> Result<(), Error> {
         self.move_to(t)?;
-        let (problem, kinds) = (self.discrete.problem(), &self.discretization.kinds);
+        let given = self.given_rates(t, u)?;
+        let problem = self.discrete.problem();
         let residual = residual(&self.discretization, u)?;
-        let prescribed = self.prescribed_rates(t)?;
-        let rates = self.mass.rates(&problem, kinds, &residual, &prescribed, &self.plan.solver);
+        let rates = self.mass.rates(&problem, &self.discretization, &residual, &given, &self.plan.solver);
         out.copy_from_slice(&rates.map_err(|e| self.discrete.explain(self.scene, e))?);
         Ok(())
     }
@@ -228,6 +243,11 @@ impl<const D: usize> Semidiscrete for Heat<'_, D> {
 
     fn damp(&mut self, t: f64, c: f64, e: &mut [f64]) -> Result<(), Error> {
         self.move_to(t)?;
+        // Values that are prescribed, or follow from equations, have no error of their own; with a mass that is not diagonal
+        // it would count for their neighbours.
+        self.mass.algebraic().for_each(|i| e[i] = 0.0);
+        let kinds = self.discretization.kinds.iter();
+        e.iter_mut().zip(kinds).filter(|(_, k)| **k == RowKind::Dirichlet).for_each(|(e, _)| *e = 0.0);
         let rhs: Vec<f64> = self.mass.times(e).into_iter().map(|m| m / c).collect();
         e.copy_from_slice(&self.solve_for(c, &rhs)?.0);
         Ok(())

@@ -28,7 +28,7 @@ pub(super) fn finer(params: &SharpParams, dimension: usize) -> Option<SharpParam
     (order <= MAX_ORDER[dimension - 1]).then_some(SharpParams { order, nodes, ..*params })
 }
 
-/// Orders that a dimension does not have, and jumps that change with time: how fast they do is no data of the rows.
+/// Orders that a dimension does not have.
 pub(super) fn check(scene: &Scene) -> Result<(), Error> {
     let highest = MAX_ORDER[scene.dimension - 1];
     if let Some(order) = scene.method.order.filter(|&order| order > highest) {
@@ -36,14 +36,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Error> {
         let error = scene.error_at_boundaries(message, format!("take an order up to {highest}"));
         return Err(error.into());
     }
-    let jumps = scene.interfaces.iter().flat_map(|i| [&i.jump, &i.flux_jump]).flatten();
-    match jumps.into_iter().find(|jump| jump.varies_in_time(scene.dimension)) {
-        Some(jump) if scene.time.is_some() => {
-            let message = "the method \"sharp\" knows no jumps that change with time";
-            Err(jump.place.error(message, "take \"immersed-interface\", or a jump without t").into())
-        }
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 pub(super) fn steps(survey: &Survey) -> Steps {
