@@ -60,6 +60,11 @@ pub enum FreeSpaceError {
         /// Index in the array.
         index: usize,
     },
+    /// Values whose sums are not finite.
+    #[error(
+        "sums of the values of the source overflow; divide it by its largest magnitude, and multiply the results"
+    )]
+    Overflow,
     /// More memory than there is.
     #[error("this mesh needs {needed} MB, {available} MB are available; use fewer cells")]
     Memory {

@@ -87,7 +87,7 @@ proptest! {
         n in [1_usize..9, 1_usize..9, 1_usize..9], h in [0.1..2.0, 0.1..2.0, 0.1..2.0], half in 1_usize..=10,
     ) {
         check_direct(n, h, Centring::Cell, 2 * half);
-        check_direct(n, [h[0]; 3], Centring::Cell, 2 * half);
+        check_direct(n, [h[0]; 3], Centring::Node, 2 * half);
     }
 
     #[test]
@@ -296,4 +296,59 @@ fn outputs_together_are_those_alone() {
     check([40, 9]);
     check([7, 1, 12]);
     check([5, 6, 9]);
+}
+
+/// Places of a cell share transforms; each alone has its own.
+#[test]
+fn shifts_together_are_those_alone() {
+    fn check<const D: usize>(cells: [usize; D], centring: Centring) {
+        let mesh = mesh(cells, std::array::from_fn(|a| 0.1 + 0.02 * a as f64), centring);
+        let source = noise(mesh.len(), 11);
+        let plan: Plan<D> = Plan::new(&mesh, Kernel::gaussian(6)).expect("a plan");
+        let outputs = [Output::Potential { source: 0 }, Output::Gradient { source: 0, axis: D - 1 }];
+        let places = (0..1 << D).map(|i| std::array::from_fn(|a| if i >> a & 1 == 1 { 0.25 } else { -0.25 }));
+        let wanted: Vec<(Output, [f64; D])> =
+            places.flat_map(|place| outputs.map(|output| (output, place))).collect();
+        let (mut workspace, mut together, mut alone) = (Workspace::default(), Vec::new(), Vec::new());
+        plan.solve_at(&[&source], &wanted, &mut workspace, &mut together).expect("fields");
+        for ((output, place), field) in wanted.iter().zip(&together) {
+            plan.solve_shifted(&[&source], &[*output], *place, &mut workspace, &mut alone).expect("a field");
+            assert!(difference(field, &alone[0]) < ROUND_OFF, "{output:?} {place:?}");
+        }
+    }
+    check([21], Centring::Cell);
+    check([17, 12], Centring::Node);
+    check([6, 7, 5], Centring::Cell);
+}
+
+/// A field that the mesh holds is known between its points, too.
+#[test]
+fn shifts_evaluate_between_the_points() {
+    let mesh = Mesh::of_box([-1.0; 3], [1.0; 3], [24; 3], Centring::Cell).expect("a mesh");
+    let source = blob(&mesh, 0.17, [0.02, 0.0, -0.03]);
+    let plan: Plan<3> = Plan::new(&mesh, Kernel::gaussian(8)).expect("a plan");
+    let wanted = [
+        (Output::Potential { source: 0 }, [1.0, 0.0, 0.0]),
+        (Output::Potential { source: 0 }, [0.0, -1.0, 2.0]),
+    ];
+    let mut fields = Vec::new();
+    plan.solve_at(&[&source], &wanted, &mut Workspace::default(), &mut fields).expect("fields");
+    let phi = plan.potential(&source).expect("a potential");
+    for (field, (_, shift)) in fields.iter().zip(wanted) {
+        for point in 0..mesh.len() {
+            let i = mesh.indices(point);
+            let moved: [i64; 3] = std::array::from_fn(|a| i[a] as i64 + shift[a] as i64);
+            if moved.iter().all(|i| (0..24).contains(i)) {
+                let there = phi[mesh.index(moved.map(|i| i as usize))];
+                assert!((field[point] - there).abs() < 1e-12 * phi[mesh.index([12; 3])]);
+            }
+        }
+    }
+}
+
+#[test]
+fn sums_that_overflow_are_refused() {
+    let mesh = Mesh::of_box([0.0; 2], [1.0; 2], [8, 8], Centring::Cell).expect("a mesh");
+    let plan: Plan<2> = Plan::new(&mesh, Kernel::gaussian(4)).expect("a plan");
+    assert_eq!(plan.potential(&[1e308; 64]), Err(FreeSpaceError::Overflow));
 }

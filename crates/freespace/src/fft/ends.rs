@@ -1,120 +1,87 @@
-//! Between arrays, in which the parts of a complex number follow each other, and packs of lines.
-//!
-//! Lines that run across rows are brought into packs by exchanging two vectors, those that run along rows by exchanging rows and
-//! columns of small squares. Rows must go on for a cache line beyond what counts.
+//! From lines of one direction to those of another, which are its columns: squares of numbers exchange rows and columns.
 
-use super::lanes::{Lanes, Pair, Work};
+use super::lanes::{Lanes, Work};
 use crate::plan::Real;
 
-/// Takes the columns of `rows` from the complex number `at` on; what there are no rows for is zero.
-pub(crate) struct FromColumns<'a, T> {
-    pub(crate) rows: &'a [&'a mut [T]],
+/// From packs of lines to packs of their columns.
+pub(crate) struct ToColumns<'a, T> {
+    /// Lines, a lane for each.
+    pub(crate) values: &'a [T],
+    /// For each pack of columns, where in the lines they are.
+    pub(crate) places: &'a [u32],
+    /// Packs of columns.
+    pub(crate) columns: &'a mut [T],
+    /// Numbers from one of them to the next.
+    pub(crate) pitch: usize,
+    /// Numbers before the lines in each.
     pub(crate) at: usize,
-    pub(crate) values: &'a mut [T],
 }
 
-#[inline(always)]
-fn zero<T: Real, S: Lanes<T>>(s: S, pairs: &mut [Pair<S::Pack>]) {
-    let zero = s.splat(T::zero());
-    for pair in pairs {
-        *pair = [zero; 2];
+impl<T: Real> Work<T> for ToColumns<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let Self { values, places, columns, pitch, at } = self;
+        let lanes = S::COUNT;
+        if lanes == 4 {
+            let pairs = s.packs(values).as_chunks::<2>().0;
+            for ([a, b, c, d], columns) in places.as_chunks::<4>().0.iter().zip(columns.chunks_mut(pitch)) {
+                let (a, b) = (pairs[*a as usize], pairs[*b as usize]);
+                let (c, d) = (pairs[*c as usize], pairs[*d as usize]);
+                let re = s.transpose([a[0], b[0], c[0], d[0]]);
+                let im = s.transpose([a[1], b[1], c[1], d[1]]);
+                if let [p, q, u, v, ..] = s.packs_mut(&mut columns[at..]).as_chunks_mut::<2>().0 {
+                    *p = [re[0], im[0]];
+                    *q = [re[1], im[1]];
+                    *u = [re[2], im[2]];
+                    *v = [re[3], im[3]];
+                }
+            }
+            return;
+        }
+        for (places, columns) in places.chunks_exact(lanes).zip(columns.chunks_mut(pitch)) {
+            for (lane, place) in places.iter().enumerate() {
+                let line = &values[2 * lanes * *place as usize..][..2 * lanes];
+                let to = columns[at + lane..].iter_mut().step_by(lanes);
+                let turns = line[..lanes].iter().zip(&line[lanes..]).flat_map(|(re, im)| [*re, *im]);
+                to.zip(turns).for_each(|(to, value)| *to = value);
+            }
+        }
     }
+}
+
+/// And back.
+pub(crate) struct FromColumns<'a, T> {
+    pub(crate) columns: &'a [T],
+    pub(crate) places: &'a [u32],
+    pub(crate) pitch: usize,
+    pub(crate) at: usize,
+    pub(crate) values: &'a mut [T],
 }
 
 impl<T: Real> Work<T> for FromColumns<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, s: S) {
-        let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
-        let count = self.rows.len().min(pairs.len());
-        let (filled, rest) = pairs.split_at_mut(count);
-        for (row, pair) in self.rows.iter().zip(filled) {
-            if let [a, b, ..] = s.packs(&row[2 * self.at..]) {
-                *pair = s.split([*a, *b]);
+        let Self { columns, places, pitch, at, values } = self;
+        let lanes = S::COUNT;
+        if lanes == 4 {
+            let pairs = s.packs_mut(values).as_chunks_mut::<2>().0;
+            for ([a, b, c, d], columns) in places.as_chunks::<4>().0.iter().zip(columns.chunks(pitch)) {
+                let [p, q, u, v, ..] = s.packs(&columns[at..]).as_chunks::<2>().0 else { continue };
+                let re = s.transpose([p[0], q[0], u[0], v[0]]);
+                let im = s.transpose([p[1], q[1], u[1], v[1]]);
+                pairs[*a as usize] = [re[0], im[0]];
+                pairs[*b as usize] = [re[1], im[1]];
+                pairs[*c as usize] = [re[2], im[2]];
+                pairs[*d as usize] = [re[3], im[3]];
             }
+            return;
         }
-        zero(s, rest);
-    }
-}
-
-/// Puts lines into the columns of `rows` from the complex number `at` on.
-pub(crate) struct ToColumns<'a, 'b, T> {
-    pub(crate) rows: &'a mut [&'b mut [T]],
-    pub(crate) at: usize,
-    pub(crate) values: &'a [T],
-}
-
-impl<T: Real> Work<T> for ToColumns<'_, '_, T> {
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, s: S) {
-        let pairs = s.packs(self.values).as_chunks::<2>().0;
-        for (row, pair) in self.rows.iter_mut().zip(pairs) {
-            if let [a, b, ..] = s.packs_mut(&mut row[2 * self.at..]) {
-                [*a, *b] = s.join(*pair);
-            }
-        }
-    }
-}
-
-/// Takes the first `count` complex numbers of up to as many lines as there are lanes; the rest is zero.
-pub(crate) struct FromLines<'a, T> {
-    pub(crate) lines: &'a [&'a [T]],
-    pub(crate) count: usize,
-    pub(crate) values: &'a mut [T],
-}
-
-impl<T: Real> Work<T> for FromLines<'_, T> {
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, s: S) {
-        let Self { lines, count, values } = self;
-        match lines {
-            [a, b, c, d] if S::COUNT == 4 => {
-                let pairs = s.packs_mut(values).as_chunks_mut::<2>().0;
-                let [a, b, c, d] = [s.packs(a), s.packs(b), s.packs(c), s.packs(d)];
-                let rows = a.iter().zip(b).zip(c).zip(d);
-                for (two, (((a, b), c), d)) in pairs.chunks_mut(2).take(count.div_ceil(2)).zip(rows) {
-                    let [p, q, u, v] = s.transpose([*a, *b, *c, *d]);
-                    two[0] = [p, q];
-                    if let Some(second) = two.get_mut(1) {
-                        *second = [u, v];
-                    }
-                }
-            }
-            _ => {
-                for (lane, line) in lines.iter().enumerate() {
-                    let places = values.chunks_exact_mut(S::COUNT).take(2 * count);
-                    places.zip(*line).for_each(|(pack, value)| pack[lane] = *value);
-                }
-            }
-        }
-        zero(s, &mut s.packs_mut(values).as_chunks_mut::<2>().0[count..]);
-    }
-}
-
-/// Puts the first `count` complex numbers back into lines.
-pub(crate) struct ToLines<'a, 'b, T> {
-    pub(crate) lines: &'a mut [&'b mut [T]],
-    pub(crate) count: usize,
-    pub(crate) values: &'a [T],
-}
-
-impl<T: Real> Work<T> for ToLines<'_, '_, T> {
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, s: S) {
-        let Self { lines, count, values } = self;
-        match lines {
-            [a, b, c, d] if S::COUNT == 4 => {
-                let pairs = s.packs(values).as_chunks::<2>().0;
-                let [a, b, c, d] = [s.packs_mut(a), s.packs_mut(b), s.packs_mut(c), s.packs_mut(d)];
-                let rows = a.iter_mut().zip(b).zip(c).zip(d);
-                for (two, (((a, b), c), d)) in pairs.chunks(2).take(count.div_ceil(2)).zip(rows) {
-                    let (first, second) = (two[0], two[two.len() - 1]);
-                    [*a, *b, *c, *d] = s.transpose_back([first[0], first[1], second[0], second[1]]);
-                }
-            }
-            _ => {
-                for (lane, line) in lines.iter_mut().enumerate() {
-                    let places = values.chunks_exact(S::COUNT).take(2 * count);
-                    places.zip(line.iter_mut()).for_each(|(pack, value)| *value = pack[lane]);
+        for (places, columns) in places.chunks_exact(lanes).zip(columns.chunks(pitch)) {
+            for (lane, place) in places.iter().enumerate() {
+                let (re, im) = values[2 * lanes * *place as usize..][..2 * lanes].split_at_mut(lanes);
+                let from = columns[at + lane..].chunks(2 * lanes);
+                for ((re, im), from) in re.iter_mut().zip(im).zip(from) {
+                    (*re, *im) = (from[0], from[lanes]);
                 }
             }
         }

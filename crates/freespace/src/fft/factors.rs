@@ -44,7 +44,7 @@ impl<T: Real> Work<T> for Accumulate<'_, T> {
     }
 }
 
-/// Multiplies each line by i times its factor.
+/// Multiplies each line by a complex factor; the real parts of these come before the imaginary ones.
 pub(crate) struct Turn<'a, T> {
     pub(crate) across: &'a [T],
     pub(crate) values: &'a mut [T],
@@ -53,28 +53,25 @@ pub(crate) struct Turn<'a, T> {
 impl<T: Real> Work<T> for Turn<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, s: S) {
-        let Some(&across) = s.packs(self.across).first() else { return };
-        let zero = s.splat(T::zero());
+        let [re, im, ..] = *s.packs(self.across) else { return };
         for pair in s.packs_mut(self.values).as_chunks_mut::<2>().0 {
-            *pair = [s.mul_sub_from(pair[1], across, zero), s.mul(pair[0], across)];
+            let [a, b] = *pair;
+            *pair = [s.mul_sub_from(b, im, s.mul(a, re)), s.mul_add(b, re, s.mul(a, im))];
         }
     }
 }
 
-/// Multiplies places by complex factors, and lines by others, whose real parts come before the imaginary ones.
+/// Multiplies places by complex factors.
 pub(crate) struct Move<'a, T> {
     pub(crate) along: &'a [[T; 2]],
-    pub(crate) across: &'a [T],
     pub(crate) values: &'a mut [T],
 }
 
 impl<T: Real> Work<T> for Move<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, s: S) {
-        let [re, im, ..] = *s.packs(self.across) else { return };
         for (pair, w) in s.packs_mut(self.values).as_chunks_mut::<2>().0.iter_mut().zip(self.along) {
-            let [a, b] = times(s, *pair, *w);
-            *pair = [s.mul_sub_from(b, im, s.mul(a, re)), s.mul_add(b, re, s.mul(a, im))];
+            *pair = times(s, *pair, *w);
         }
     }
 }

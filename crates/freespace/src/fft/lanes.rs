@@ -20,14 +20,8 @@ pub trait Lanes<T>: Copy {
     fn mul_sub_from(self, a: Self::Pack, b: Self::Pack, c: Self::Pack) -> Self::Pack;
     fn packs(self, values: &[T]) -> &[Self::Pack];
     fn packs_mut(self, values: &mut [T]) -> &mut [Self::Pack];
-    /// From pairs of real and imaginary parts to all real and all imaginary ones, of the lines in some fixed order.
-    fn split(self, pairs: [Self::Pack; 2]) -> [Self::Pack; 2];
-    /// The inverse of `split`.
-    fn join(self, parts: [Self::Pack; 2]) -> [Self::Pack; 2];
     /// Rows and columns of a square of four by four exchanged. For vectors of four.
     fn transpose(self, rows: [Self::Pack; 4]) -> [Self::Pack; 4];
-    /// The inverse of `transpose`.
-    fn transpose_back(self, columns: [Self::Pack; 4]) -> [Self::Pack; 4];
 }
 
 /// Work on vectors: what it does must not depend on how many lanes they have.
@@ -44,7 +38,7 @@ pub trait Vectors: Sized {
 
 macro_rules! vectors {
     ($type:ty, $pack:ident, $count:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $mul_add:ident, $negate_mul_add:ident,
-     $packs:ident, $packs_mut:ident, $split:ident, $join:ident) => {
+     $packs:ident, $packs_mut:ident, $transpose:ident) => {
         impl<S: Simd> Lanes<$type> for S {
             type Pack = S::$pack;
             const COUNT: usize = S::$count;
@@ -81,20 +75,8 @@ macro_rules! vectors {
                 S::$packs_mut(values).0
             }
             #[inline(always)]
-            fn split(self, pairs: [Self::Pack; 2]) -> [Self::Pack; 2] {
-                self.$split(pairs)
-            }
-            #[inline(always)]
-            fn join(self, parts: [Self::Pack; 2]) -> [Self::Pack; 2] {
-                self.$join(parts)
-            }
-            #[inline(always)]
             fn transpose(self, rows: [Self::Pack; 4]) -> [Self::Pack; 4] {
-                self.$split(rows)
-            }
-            #[inline(always)]
-            fn transpose_back(self, columns: [Self::Pack; 4]) -> [Self::Pack; 4] {
-                self.$join(columns)
+                self.$transpose(rows)
             }
         }
 
@@ -127,8 +109,7 @@ vectors!(
     negate_mul_add_f64s,
     as_simd_f64s,
     as_mut_simd_f64s,
-    deinterleave_shfl_f64s,
-    interleave_shfl_f64s
+    deinterleave_shfl_f64s
 );
 vectors!(
     f32,
@@ -142,8 +123,7 @@ vectors!(
     negate_mul_add_f32s,
     as_simd_f32s,
     as_mut_simd_f32s,
-    deinterleave_shfl_f32s,
-    interleave_shfl_f32s
+    deinterleave_shfl_f32s
 );
 
 /// A complex number of each line: real and imaginary parts.
@@ -223,10 +203,6 @@ mod tests {
             if S::COUNT == 4 {
                 assert!((0..16).all(|i| columns[i] == numbers[4 * (i % 4) + i / 4]));
             }
-            let [p, q, u, v] = *s.packs(&columns) else { return };
-            let mut back = vec![0.0; 4 * S::COUNT];
-            s.packs_mut(&mut back).copy_from_slice(&s.transpose_back([p, q, u, v]));
-            assert_eq!(back, numbers);
         }
     }
 

@@ -8,7 +8,7 @@ use rustfft::num_complex::Complex;
 
 use super::factors::Weigh;
 use super::lanes::{Lanes, Work};
-use super::stage::{Blocks, Middle, Stage, Step};
+use super::stage::{Blocks, FromHalf, Middle, Stage, Step, ToHalf};
 use crate::plan::Real;
 
 /// Numbers of all lines together on which one stage follows the other: half of a first-level cache.
@@ -18,44 +18,30 @@ const NEAR: usize = 2048;
 #[derive(Debug, Clone)]
 pub(crate) struct Machine {
     arch: Arch,
-    /// The column that each lane holds.
-    columns: Vec<usize>,
+    lanes: usize,
 }
 
-/// Which column each lane holds when columns are brought into packs.
-struct Columns<'a, T> {
-    columns: &'a mut Vec<usize>,
-    first: T,
-}
+/// How many lanes there are.
+struct Count<'a>(&'a mut usize);
 
-impl<T: Real> Work<T> for Columns<'_, T> {
+impl<T: Real> Work<T> for Count<'_> {
     #[inline(always)]
-    fn run<S: Lanes<T>>(self, s: S) {
-        let numbers: Vec<T> = (0..2 * S::COUNT).map(|i| self.first + T::rounded((i / 2) as f64)).collect();
-        let mut lanes = vec![T::zero(); S::COUNT];
-        if let ([a, b], [out]) = (s.packs(&numbers), s.packs_mut(&mut lanes)) {
-            *out = s.split([*a, *b])[0];
-        }
-        *self.columns = lanes.into_iter().map(|column| column.widened() as usize).collect();
+    fn run<S: Lanes<T>>(self, _: S) {
+        *self.0 = S::COUNT;
     }
 }
 
 impl Machine {
     pub(crate) fn new<T: Real>() -> Self {
         let arch = Arch::new();
-        let mut columns = Vec::new();
-        T::vectorize(arch, Columns { columns: &mut columns, first: T::zero() });
-        Self { arch, columns }
-    }
-
-    /// The column that each lane holds; their number is that of the lanes.
-    pub(crate) fn columns(&self) -> &[usize] {
-        &self.columns
+        let mut lanes = 1;
+        T::vectorize(arch, Count(&mut lanes));
+        Self { arch, lanes }
     }
 
     /// Numbers of type `T` that a vector holds.
     pub(crate) fn lanes(&self) -> usize {
-        self.columns.len()
+        self.lanes
     }
 
     pub(crate) fn run<T: Real>(&self, work: impl Work<T>) {
@@ -188,64 +174,85 @@ impl<T: Real> Lines<T> {
         self.len.is_multiple_of(2) && self.library.is_none()
     }
 
-    /// Forward; of a line of which `half` is known to be zero, that is not looked at.
-    pub(crate) fn forward(&self, machine: &Machine, values: &mut [T], half: bool) {
-        if let Some(library) = &self.library {
-            return library.transform(library.forward.as_ref(), machine.lanes(), values);
-        }
-        for (index, stage) in self.stages.iter().enumerate() {
-            let step = if half && index == 0 { Step::FromHalf } else { Step::Forward };
-            machine.run(Blocks { stage, step, values });
+    /// Forward.
+    pub(crate) fn forward(&self, machine: &Machine, values: &mut [T]) {
+        match &self.library {
+            Some(library) => library.transform(library.forward.as_ref(), machine.lanes(), values),
+            None => run(machine, self.stages.iter(), Step::Forward, values),
         }
     }
 
-    /// Back, times the length; if only `half` of a line is wanted, the rest is left undefined.
-    pub(crate) fn inverse(&self, machine: &Machine, values: &mut [T], half: bool) {
-        if let Some(library) = &self.library {
-            return library.transform(library.inverse.as_ref(), machine.lanes(), values);
+    /// Forward, of lines that are zero beyond `input`, at most a half. For lengths that [`Self::halves`] are possible with.
+    pub(crate) fn forward_from(&self, machine: &Machine, input: &[T], values: &mut [T]) {
+        let [stage, rest @ ..] = &self.stages[..] else { return };
+        machine.run(FromHalf { stage, input, values });
+        run(machine, rest.iter(), Step::Forward, values);
+    }
+
+    /// Back, times the length.
+    pub(crate) fn inverse(&self, machine: &Machine, values: &mut [T]) {
+        match &self.library {
+            Some(library) => library.transform(library.inverse.as_ref(), machine.lanes(), values),
+            None => run(machine, self.stages.iter().rev(), Step::Inverse, values),
         }
-        for (index, stage) in self.stages.iter().enumerate().rev() {
-            let step = if half && index == 0 { Step::ToHalf } else { Step::Inverse };
-            machine.run(Blocks { stage, step, values });
-        }
+    }
+
+    /// Back, times the length, of which only the beginning is wanted, at most a half: `output`.
+    pub(crate) fn inverse_to(&self, machine: &Machine, values: &mut [T], output: &mut [T]) {
+        let [stage, rest @ ..] = &self.stages[..] else { return };
+        run(machine, rest.iter().rev(), Step::Inverse, values);
+        machine.run(ToHalf { stage, values, output });
     }
 
     /// Forward, times `weights` of the magnitudes of wave numbers, and back.
-    pub(crate) fn convolve(&self, machine: &Machine, values: &mut [T], weights: &[T], half: bool) {
-        let [outer @ .., last] = &self.stages[..] else {
-            self.forward(machine, values, half);
+    pub(crate) fn convolve(&self, machine: &Machine, values: &mut [T], weights: &[T]) {
+        if self.stages.is_empty() {
+            self.forward(machine, values);
             machine.run(Weigh { values, weights, fold: &self.fold });
-            return self.inverse(machine, values, half);
-        };
-        if outer.is_empty() && half {
-            self.forward(machine, values, half);
-            machine.run(Weigh { values, weights, fold: &self.fold });
-            return self.inverse(machine, values, half);
+            return self.inverse(machine, values);
         }
+        self.convolve_stages(&self.stages, machine, values, weights);
+    }
+
+    /// The same of lines that are zero beyond `line`, at most a half, which is all that is wanted.
+    pub(crate) fn convolve_half(&self, machine: &Machine, line: &mut [T], values: &mut [T], weights: &[T]) {
+        let [stage, rest @ ..] = &self.stages[..] else { return };
+        machine.run(FromHalf { stage, input: line, values });
+        if rest.is_empty() {
+            machine.run(Weigh { values, weights, fold: &self.fold });
+        } else {
+            self.convolve_stages(rest, machine, values, weights);
+        }
+        machine.run(ToHalf { stage, values, output: line });
+    }
+
+    /// Some of the stages, the last ones, product, and these stages back.
+    fn convolve_stages(&self, stages: &[Stage<T>], machine: &Machine, values: &mut [T], weights: &[T]) {
+        let [outer @ .., last] = stages else { return };
         let width = 2 * machine.lanes();
         // Large blocks stage by stage, small ones through all stages while they are near.
         let near = outer.iter().position(|s| s.radix * s.below * width <= NEAR).unwrap_or(outer.len());
-        let (far, near) = outer.split_at(near.max(usize::from(half)));
-        for (index, stage) in far.iter().enumerate() {
-            let step = if half && index == 0 { Step::FromHalf } else { Step::Forward };
-            machine.run(Blocks { stage, step, values });
-        }
+        let (far, near) = outer.split_at(near);
+        run(machine, far.iter(), Step::Forward, values);
         let block = near.first().unwrap_or(last);
         let block = block.radix * block.below;
         for (values, fold) in values.chunks_exact_mut(block * width).zip(self.fold.chunks_exact(block)) {
-            for stage in near {
-                machine.run(Blocks { stage, step: Step::Forward, values });
-            }
+            run(machine, near.iter(), Step::Forward, values);
             machine.run(Middle { radix: last.radix, values, weights, fold });
-            for stage in near.iter().rev() {
-                machine.run(Blocks { stage, step: Step::Inverse, values });
-            }
+            run(machine, near.iter().rev(), Step::Inverse, values);
         }
-        for (index, stage) in far.iter().enumerate().rev() {
-            let step = if half && index == 0 { Step::ToHalf } else { Step::Inverse };
-            machine.run(Blocks { stage, step, values });
-        }
+        run(machine, far.iter().rev(), Step::Inverse, values);
     }
+}
+
+/// One stage after the other.
+fn run<'a, T: Real>(
+    machine: &Machine,
+    stages: impl Iterator<Item = &'a Stage<T>>,
+    step: Step,
+    values: &mut [T],
+) {
+    stages.for_each(|stage| machine.run(Blocks { stage, step, values }));
 }
 
 impl<T: Real> Library<T> {
@@ -295,29 +302,35 @@ mod tests {
         {
             let lines = Lines::<f64>::new(n);
             let before = packs(2 * lanes * n);
-            for half in [false, true] {
-                if half && !lines.halves() {
-                    continue;
-                }
-                let mut values = before.clone();
-                if half {
-                    values[lanes * n..].fill(0.0);
-                }
-                let zeroed = values.clone();
+            let halves = [n, n / 2, (n / 2).div_ceil(2) + 1, n / 3];
+            for filled in halves.into_iter().take(if lines.halves() { 4 } else { 1 }) {
+                let filled = filled.min(if filled < n { n / 2 } else { n }).max(1);
+                let mut zeroed = before.clone();
+                zeroed[2 * lanes * filled..].fill(0.0);
+                let input = zeroed[..2 * lanes * filled].to_vec();
                 // What is not looked at may be anything.
-                values[lanes * n..].iter_mut().for_each(|v| *v = if half { f64::NAN } else { *v });
-                lines.forward(&machine, &mut values, half);
+                let mut values = if filled < n { vec![f64::NAN; 2 * lanes * n] } else { before.clone() };
+                if filled < n {
+                    lines.forward_from(&machine, &input, &mut values);
+                } else {
+                    lines.forward(&machine, &mut values);
+                }
                 for (place, pair) in values.chunks_exact(2 * lanes).enumerate() {
                     for lane in 0..lanes {
                         let [re, im] = direct(&zeroed, lanes, lane, lines.order()[place], n);
                         let error = (pair[lane] - re).hypot(pair[lanes + lane] - im);
-                        assert!(error < 1e-15 * n as f64, "{n} {half} {place}: {error:e}");
+                        assert!(error < 1e-15 * n as f64, "{n} {filled} {place}: {error:e}");
                     }
                 }
-                lines.inverse(&machine, &mut values, half);
-                let wanted = if half { lanes * n } else { 2 * lanes * n };
-                for (value, before) in values[..wanted].iter().zip(&zeroed) {
-                    assert!((value / n as f64 - before).abs() < 2e-15, "{n} {half}: {value:e} {before:e}");
+                let mut output = vec![f64::NAN; input.len()];
+                if filled < n {
+                    lines.inverse_to(&machine, &mut values, &mut output);
+                } else {
+                    lines.inverse(&machine, &mut values);
+                    output.copy_from_slice(&values);
+                }
+                for (value, before) in output.iter().zip(&input) {
+                    assert!((value / n as f64 - before).abs() < 2e-15, "{n} {filled}: {value:e} {before:e}");
                 }
             }
         }
@@ -331,21 +344,24 @@ mod tests {
             let lines = Lines::<f64>::new(n);
             let before = packs(2 * lanes * n);
             let weights = packs(lanes * (n / 2 + 1));
-            for half in [false, true] {
-                if half && !lines.halves() {
-                    continue;
+            for filled in [n, n / 2].into_iter().take(if lines.halves() { 2 } else { 1 }) {
+                let mut other = before.clone();
+                other[2 * lanes * filled..].fill(0.0);
+                let mut one = other[..2 * lanes * filled].to_vec();
+                if filled < n {
+                    let mut values = vec![f64::NAN; 2 * lanes * n];
+                    lines.convolve_half(&machine, &mut one, &mut values, &weights);
+                } else {
+                    lines.convolve(&machine, &mut one, &weights);
                 }
-                let filled = if half { lanes * n } else { 2 * lanes * n };
-                let (mut one, mut other) = (before.clone(), before.clone());
-                lines.convolve(&machine, &mut one, &weights, half);
-                lines.forward(&machine, &mut other, half);
+                lines.forward(&machine, &mut other);
                 for (place, pair) in other.chunks_exact_mut(2 * lanes).enumerate() {
                     let weights = &weights[lanes * lines.fold()[place] as usize..];
                     (0..2 * lanes).for_each(|i| pair[i] *= weights[i % lanes]);
                 }
-                lines.inverse(&machine, &mut other, half);
-                let worst = one[..filled].iter().zip(&other).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-                assert!(worst < 1e-13 * n as f64, "{n} {half}: {worst:e}");
+                lines.inverse(&machine, &mut other);
+                let worst = one.iter().zip(&other).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+                assert!(worst < 1e-13 * n as f64, "{n} {filled}: {worst:e}");
             }
         }
     }

@@ -14,7 +14,7 @@ mod lines;
 mod reals;
 mod stage;
 
-pub(crate) use ends::{FromColumns, FromLines, ToColumns, ToLines};
+pub(crate) use ends::{FromColumns, ToColumns};
 pub(crate) use factors::{Accumulate, Factor, Move, Turn, Weigh};
 pub(crate) use lanes::{MOST, Vectors};
 pub(crate) use lines::{Lines, Machine};

@@ -1,7 +1,7 @@
 //! Real lines: as many in the real parts as in the imaginary parts of packs, since the transforms of two real lines can be told
 //! apart by their symmetry.
 
-use super::lanes::{Lanes, Pair, Work};
+use super::lanes::{Lanes, Pair, Work, times};
 use crate::plan::Real;
 
 /// Takes the first `count` numbers of as many lines as there are lanes, to every `stride`-th pack from `first` on.
@@ -62,8 +62,7 @@ impl<T: Real> Work<T> for ToReals<'_, '_, T> {
             let rows = s.packs_mut(&mut a[..count]).iter_mut().zip(s.packs_mut(&mut b[..count]));
             let rows = rows.zip(s.packs_mut(&mut c[..count])).zip(s.packs_mut(&mut d[..count]));
             for (from, (((a, b), c), d)) in packs.chunks(4 * stride).zip(rows) {
-                [*a, *b, *c, *d] =
-                    s.transpose_back([from[0], from[stride], from[2 * stride], from[3 * stride]]);
+                [*a, *b, *c, *d] = s.transpose([from[0], from[stride], from[2 * stride], from[3 * stride]]);
                 done += 4;
             }
         }
@@ -75,12 +74,12 @@ impl<T: Real> Work<T> for ToReals<'_, '_, T> {
     }
 }
 
-/// Rows of a spectrum, one for each wave number, in which lines are columns.
+/// Rows of a spectrum, one for each wave number, in each the packs of two groups of lines.
 pub(crate) struct Spectrum<'a, T> {
     pub(crate) rows: &'a mut [T],
     /// Numbers from one row to the next.
     pub(crate) row: usize,
-    /// The first column.
+    /// Numbers before the lines in each row.
     pub(crate) at: usize,
 }
 
@@ -100,41 +99,33 @@ impl<T: Real> Work<T> for Untangle<'_, T> {
             let (z, w) = (pairs[*p as usize], pairs[*q as usize]);
             let even: Pair<S::Pack> = [s.add(z[0], w[0]), s.sub(z[1], w[1])];
             let odd: Pair<S::Pack> = [s.add(z[1], w[1]), s.sub(w[0], z[0])];
-            if let [a, b, c, d, ..] = s.packs_mut(&mut row[2 * at..]) {
-                [*a, *b] = s.join(even);
-                [*c, *d] = s.join(odd);
+            if let [first, second, ..] = s.packs_mut(&mut row[at..]).as_chunks_mut::<2>().0 {
+                *first = even;
+                *second = odd;
             }
         }
     }
 }
 
-/// The inverse, times a real factor for each wave number, or times i and this factor.
+/// The inverse, times a complex factor for each wave number.
 pub(crate) struct Tangle<'a, T> {
     pub(crate) values: &'a mut [T],
     pub(crate) places: &'a [[u32; 2]],
     pub(crate) rows: &'a [T],
     pub(crate) row: usize,
     pub(crate) at: usize,
-    pub(crate) factors: Option<&'a [T]>,
-    pub(crate) turned: bool,
+    pub(crate) factors: Option<&'a [[T; 2]]>,
 }
 
 impl<T: Real> Work<T> for Tangle<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, s: S) {
         let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
-        let zero = s.splat(T::zero());
         for (k, (row, [p, q])) in self.rows.chunks_exact(self.row).zip(self.places).enumerate() {
-            let [a, b, c, d, ..] = s.packs(&row[2 * self.at..]) else { continue };
-            let (mut even, mut odd) = (s.split([*a, *b]), s.split([*c, *d]));
+            let [mut even, mut odd, ..] = *s.packs(&row[self.at..]).as_chunks::<2>().0 else { continue };
             if let Some(factors) = self.factors {
-                let f = s.splat(factors[k]);
-                even = [s.mul(even[0], f), s.mul(even[1], f)];
-                odd = [s.mul(odd[0], f), s.mul(odd[1], f)];
-            }
-            if self.turned {
-                even = [s.sub(zero, even[1]), even[0]];
-                odd = [s.sub(zero, odd[1]), odd[0]];
+                even = times(s, even, factors[k]);
+                odd = times(s, odd, factors[k]);
             }
             // The spectrum of a real line is real at both ends, up to round-off.
             if p == q {

@@ -30,15 +30,11 @@ impl<T: Real> Stage<T> {
     }
 }
 
-/// What a stage does with a block.
+/// Which way a stage goes.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
     Forward,
     Inverse,
-    /// Forward, where the upper half of the block is zero and not looked at. Radices 2 and 4.
-    FromHalf,
-    /// Inverse, where only the lower half is wanted. Radices 2 and 4.
-    ToHalf,
 }
 
 /// A stage for every block of `values`.
@@ -65,10 +61,6 @@ impl<T: Real> Work<T> for Blocks<'_, T> {
                 (Step::Inverse, 4) => inverse_four(s, block, factors),
                 (Step::Inverse, 5) => inverse_five(s, block, factors),
                 (Step::Inverse, _) => inverse_eight(s, block, factors),
-                (Step::FromHalf, 2) => from_half_two(s, block, factors),
-                (Step::FromHalf, _) => from_half_four(s, block, factors),
-                (Step::ToHalf, 2) => to_half_two(s, block, factors),
-                (Step::ToHalf, _) => to_half_four(s, block, factors),
             }
         }
     }
@@ -118,53 +110,88 @@ stage!(forward_four, inverse_four, four, 4, [b 1, c 2, d 3]);
 stage!(forward_five, inverse_five, five, 5, [b 1, c 2, d 3, e 4]);
 stage!(forward_eight, inverse_eight, eight, 8, [b 1, c 2, d 3, e 4, f 5, g 6, h 7]);
 
-#[inline(always)]
-fn from_half_two<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
-    let (low, high) = block.split_at_mut(factors.len());
-    for ((a, b), w) in low.iter().zip(high).zip(factors) {
-        *b = times(s, *a, *w);
+/// The first stage forward, radix 2 or 4, of a line that is known to be zero beyond `input`, at most half of it.
+pub(super) struct FromHalf<'a, T> {
+    pub(super) stage: &'a Stage<T>,
+    pub(super) input: &'a [T],
+    pub(super) values: &'a mut [T],
+}
+
+impl<T: Real> Work<T> for FromHalf<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let Stage { radix, below, ref factors } = *self.stage;
+        let input = s.packs(self.input).as_chunks::<2>().0;
+        let block = s.packs_mut(self.values).as_chunks_mut::<2>().0;
+        let (first, rest) = block.split_at_mut(below);
+        let zero = s.splat(T::zero());
+        if radix == 2 {
+            let second = &mut rest[..below];
+            for (((a, b), from), w) in first.iter_mut().zip(second).zip(input).zip(factors) {
+                *a = *from;
+                *b = times(s, *from, *w);
+            }
+            first[input.len().min(below)..].fill([zero; 2]);
+            rest[input.len().min(below)..below].fill([zero; 2]);
+            return;
+        }
+        let factors = &factors.as_chunks::<3>().0[..below];
+        let (second, rest) = rest.split_at_mut(below);
+        let (third, fourth) = rest.split_at_mut(below);
+        let fourth = &mut fourth[..below];
+        let (low, high) = input.split_at(below.min(input.len()));
+        let high = &high[..high.len().min(below)];
+        for (j, (a, b)) in low.iter().zip(high).enumerate() {
+            let (a, b, w) = (*a, *b, &factors[j]);
+            first[j] = add(s, a, b);
+            second[j] = times(s, sub_turned(s, a, b), w[0]);
+            third[j] = times(s, sub(s, a, b), w[1]);
+            fourth[j] = times(s, add_turned(s, a, b), w[2]);
+        }
+        for (j, w) in factors.iter().enumerate().skip(high.len()) {
+            let a = if j < low.len() { low[j] } else { [zero; 2] };
+            first[j] = a;
+            second[j] = times(s, a, w[0]);
+            third[j] = times(s, a, w[1]);
+            fourth[j] = times(s, a, w[2]);
+        }
     }
 }
 
-#[inline(always)]
-fn to_half_two<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
-    let (low, high) = block.split_at_mut(factors.len());
-    for ((a, b), w) in low.iter_mut().zip(high).zip(factors) {
-        *a = swapped(add(s, swapped(*a), times(s, swapped(*b), *w)));
-    }
+/// The last stage back, of which only the beginning of the line is wanted, at most half of it.
+pub(super) struct ToHalf<'a, T> {
+    pub(super) stage: &'a Stage<T>,
+    pub(super) values: &'a [T],
+    pub(super) output: &'a mut [T],
 }
 
-#[inline(always)]
-fn from_half_four<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
-    let factors = factors.as_chunks::<3>().0;
-    let below = factors.len();
-    let (first, rest) = block.split_at_mut(below);
-    let (second, rest) = rest.split_at_mut(below);
-    let (third, fourth) = rest.split_at_mut(below);
-    let fourth = &mut fourth[..below];
-    for j in 0..below {
-        let (a, b, w) = (first[j], second[j], &factors[j]);
-        first[j] = add(s, a, b);
-        second[j] = times(s, sub_turned(s, a, b), w[0]);
-        third[j] = times(s, sub(s, a, b), w[1]);
-        fourth[j] = times(s, add_turned(s, a, b), w[2]);
-    }
-}
-
-#[inline(always)]
-fn to_half_four<T: Real, S: Lanes<T>>(s: S, block: &mut [Pair<S::Pack>], factors: &[[T; 2]]) {
-    let factors = factors.as_chunks::<3>().0;
-    let below = factors.len();
-    let (first, rest) = block.split_at_mut(below);
-    let (second, rest) = rest.split_at_mut(below);
-    let (third, fourth) = rest.split_at_mut(below);
-    let fourth = &fourth[..below];
-    for j in 0..below {
-        let w = &factors[j];
-        let (a, b) = (swapped(first[j]), times(s, swapped(second[j]), w[0]));
-        let (c, d) = (times(s, swapped(third[j]), w[1]), times(s, swapped(fourth[j]), w[2]));
-        first[j] = swapped(add(s, add(s, a, c), add(s, b, d)));
-        second[j] = swapped(sub_turned(s, sub(s, a, c), sub(s, b, d)));
+impl<T: Real> Work<T> for ToHalf<'_, T> {
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, s: S) {
+        let Stage { radix, below, ref factors } = *self.stage;
+        let block = s.packs(self.values).as_chunks::<2>().0;
+        let output = s.packs_mut(self.output).as_chunks_mut::<2>().0;
+        let (first, rest) = block.split_at(below);
+        if radix == 2 {
+            for (((to, a), b), w) in output.iter_mut().zip(first).zip(rest).zip(factors) {
+                *to = swapped(add(s, swapped(*a), times(s, swapped(*b), *w)));
+            }
+            return;
+        }
+        let factors = &factors.as_chunks::<3>().0[..below];
+        let (second, rest) = rest.split_at(below);
+        let (third, fourth) = rest.split_at(below);
+        let fourth = &fourth[..below];
+        let (low, high) = output.split_at_mut(below.min(output.len()));
+        for (j, to) in low.iter_mut().enumerate() {
+            let w = &factors[j];
+            let (a, b) = (swapped(first[j]), times(s, swapped(second[j]), w[0]));
+            let (c, d) = (times(s, swapped(third[j]), w[1]), times(s, swapped(fourth[j]), w[2]));
+            *to = swapped(add(s, add(s, a, c), add(s, b, d)));
+            if let Some(to) = high.get_mut(j) {
+                *to = swapped(sub_turned(s, sub(s, a, c), sub(s, b, d)));
+            }
+        }
     }
 }
 

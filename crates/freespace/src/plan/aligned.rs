@@ -1,4 +1,4 @@
-//! Arrays and rows that suit the cache.
+//! Arrays that suit the cache.
 
 use std::ops::{Deref, DerefMut};
 
@@ -41,14 +41,4 @@ impl<V> DerefMut for Aligned<V> {
     fn deref_mut(&mut self) -> &mut [V] {
         &mut self.values[self.skip..]
     }
-}
-
-/// Complex numbers of a cache line.
-const GROUP: usize = 4;
-
-/// From one line or row of `n` complex numbers to the next: whole packs of `lanes` lines fit into a row, and some numbers lie between
-/// two, since places whose distance is a power of two would all fall on the same few lines of the cache.
-pub(super) fn pitch(n: usize, lanes: usize) -> usize {
-    let group = GROUP.max(lanes);
-    n.next_multiple_of(group) + group
 }

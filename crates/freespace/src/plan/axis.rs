@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::boundary::Continuation;
 use super::real::Real;
-use crate::fft::Lines;
+use crate::fft::{Lines, Machine};
 
 /// Number of points, padded length and transforms of one direction.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ pub(super) struct Axis<T: Real> {
     pub(super) wave_at: Vec<T>,
     pub(super) lines: Lines<T>,
     /// Whether the upper half of a line is zero and not wanted.
-    pub(super) halved: bool,
+    halved: bool,
 }
 
 impl<T: Real> Axis<T> {
@@ -47,23 +47,57 @@ impl<T: Real> Axis<T> {
         }
     }
 
-    /// Values that a line begins with.
+    /// Values of a line that its transform knows of.
     pub(super) fn own(&self) -> usize {
         self.own
     }
 
-    /// Places of a line that have to be filled.
-    pub(super) fn filled(&self) -> usize {
-        if self.halved { self.len / 2 } else { self.len }
+    /// Forward, from packs of as many places as there are points.
+    pub(super) fn forward(&self, machine: &Machine, line: &[T], values: &mut [T]) {
+        if self.halved {
+            return self.lines.forward_from(machine, line, values);
+        }
+        self.continued(machine, line, values);
+        self.lines.forward(machine, values);
     }
 
-    /// Continues packs of `width` numbers, the first of which are there already.
-    pub(super) fn continue_packs(&self, packs: &mut [T], width: usize) {
+    /// Back, to packs of as many places as there are points, times the length.
+    pub(super) fn inverse(&self, machine: &Machine, values: &mut [T], line: &mut [T]) {
+        if self.halved {
+            return self.lines.inverse_to(machine, values, line);
+        }
+        self.lines.inverse(machine, values);
+        self.begun(machine, values, line);
+    }
+
+    /// Forward, times `weights` of the magnitudes of wave numbers, and back.
+    pub(super) fn convolve(&self, machine: &Machine, line: &mut [T], values: &mut [T], weights: &[T]) {
+        if self.halved {
+            return self.lines.convolve_half(machine, line, values, weights);
+        }
+        self.continued(machine, line, values);
+        self.lines.convolve(machine, values, weights);
+        self.begun(machine, values, line);
+    }
+
+    /// A line with its images, padded.
+    fn continued(&self, machine: &Machine, line: &[T], values: &mut [T]) {
+        let width = 2 * machine.lanes();
+        let (own, rest) = values.split_at_mut(self.own * width);
+        own.copy_from_slice(&line[..self.own * width]);
+        rest.fill(T::zero());
         for &(place, index, sign) in &self.images {
             for i in 0..width {
-                packs[place * width + i] = packs[index * width + i] * sign;
+                values[place * width + i] = line[index * width + i] * sign;
             }
         }
+    }
+
+    /// The beginning of a line; beyond a period it begins again.
+    fn begun(&self, machine: &Machine, values: &[T], line: &mut [T]) {
+        let once = self.n.min(self.len) * 2 * machine.lanes();
+        line[..once].copy_from_slice(&values[..once]);
+        line.copy_within(..line.len() - once, once);
     }
 
     /// Places of a transform up to and including the Nyquist frequency.

@@ -3,6 +3,7 @@
 use rustfft::num_complex::Complex;
 
 use super::Plan;
+use super::aligned::Aligned;
 use super::real::Real;
 
 impl<const D: usize, T: Real> Plan<D, T> {
@@ -33,6 +34,24 @@ impl<const D: usize, T: Real> Plan<D, T> {
                 line.fill(Complex::new(T::one(), T::zero()));
                 forward.process_with_scratch(&mut line, &mut scratch);
                 inverse.process_with_scratch(&mut line, &mut scratch);
+            }
+        }
+    }
+
+    /// The same with the transforms that a solve is made of: several lines at once, without the zeros of padded lines and what is not wanted
+    /// of the results.
+    pub fn bare_packed_transforms(&self) {
+        let ([x, y, z], machine) = (&self.engine.axes, &self.engine.machine);
+        let planes = if self.engine.is_flat() { 1 } else { x.half() };
+        let across = if self.engine.is_flat() { 0 } else { planes * z.n.div_ceil(machine.lanes()) };
+        let pairs = (y.n * z.n).div_ceil(2 * machine.lanes());
+        for (axis, count) in [(x, pairs), (y, across), (z, planes * self.engine.packs.len())] {
+            let mut line = Aligned::zeros(axis.n * 2 * machine.lanes());
+            let mut values = Aligned::zeros(axis.len * 2 * machine.lanes());
+            for _ in 0..count {
+                line.fill(T::one());
+                axis.forward(machine, &line, &mut values);
+                axis.inverse(machine, &mut values, &mut line);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, fast_length};
 use super::boundary::{Boundary, Continuation};
-use super::engine::Engine;
+use super::engine::{self, Engine};
 use super::estimate::Estimate;
 use super::memory;
 use super::octant::{Mixed, Octant};
@@ -109,11 +109,14 @@ impl Layout {
     pub(super) fn engine<T: Real>(&self, octant: Octant, estimate: Option<(usize, f64)>) -> Engine<T> {
         // Spectra of the first direction are twice what they should be.
         let all = 2.0 * self.lengths().iter().map(|&n| n as f64).product::<f64>();
+        let axes = std::array::from_fn(|a| Axis::new(self.points[a], &self.lines[a], self.spacing[a]));
+        let machine = Machine::new::<T>();
+        let packs = engine::packs(&axes, machine.lanes());
         Engine {
-            axes: std::array::from_fn(|a| Axis::new(self.points[a], &self.lines[a], self.spacing[a])),
-            machine: Machine::new::<T>(),
-            // In place where the type is the same.
-            kernel: octant.values.into_iter().map(|g| T::rounded(g / all)).collect(),
+            kernel: octant.packed(self.half(), &packs, all),
+            axes,
+            machine,
+            packs,
             estimate: estimate
                 .map(|(order, sigma)| Estimate::new(order, sigma, self.lengths(), self.spacing, all)),
         }
@@ -138,7 +141,7 @@ fn coarsest<const D: usize>(mesh: &Mesh<D>) -> f64 {
 }
 
 /// The engine of a kernel with boundaries.
-pub(super) fn engine<const D: usize, T: Real>(
+pub(super) fn planned<const D: usize, T: Real>(
     mesh: &Mesh<D>,
     layout: &Layout,
     kernel: Kernel,

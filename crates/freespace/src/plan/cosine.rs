@@ -1,85 +1,109 @@
 //! Cosine transforms of arrays that are even in every direction.
 
 use rayon::prelude::*;
-use realfft::RealToComplex;
-use rustfft::num_complex::Complex;
-use std::sync::Arc;
 
-use super::real::Real;
+use super::aligned::Aligned;
+use crate::fft::{FromReals, Lines, MOST, Machine, ToReals};
 
-/// Lines gathered at once from a strided array, and entries of a piece of a plane that one task works on.
-const LINES: usize = 16;
-const PIECE: usize = 128;
+/// Entries of a piece of a plane that one task works on.
+const PIECE: usize = 32;
 
 /// Transforms of one length: `X_k = x_0 + (-1)^k x_n + 2 sum x_j cos(pi j k / n)`, n + 1 numbers each (DCT-I), which is the
-/// discrete Fourier transform of the even continuation with period 2n.
+/// discrete Fourier transform of the even continuation with period 2n. It is real, so that two packs of lines are the real and the
+/// imaginary parts of one.
 struct Cosine {
-    plan: Arc<dyn RealToComplex<f64>>,
-    period: usize,
+    lines: Lines<f64>,
+    machine: Machine,
+    half: usize,
 }
 
 struct Scratch {
-    even: Vec<f64>,
-    spectrum: Vec<Complex<f64>>,
-    inner: Vec<Complex<f64>>,
-    lines: Vec<f64>,
+    /// The even continuation.
+    values: Aligned<f64>,
+    /// Lines before and after.
+    packs: Aligned<f64>,
+    /// A line of zeros, and lines that are not wanted.
+    missing: Vec<f64>,
 }
 
 impl Cosine {
     fn new(half: usize) -> Self {
-        let period = (2 * (half - 1)).max(1);
-        Self { plan: f64::real(period).0, period }
+        Self { lines: Lines::new((2 * (half - 1)).max(1)), machine: Machine::new::<f64>(), half }
+    }
+
+    /// Numbers of a place of two packs.
+    fn width(&self) -> usize {
+        2 * self.machine.lanes()
     }
 
     fn scratch(&self) -> Scratch {
+        let period = (2 * (self.half - 1)).max(1);
         Scratch {
-            even: vec![0.0; self.period],
-            spectrum: self.plan.make_output_vec(),
-            inner: self.plan.make_scratch_vec(),
-            lines: vec![0.0; LINES * self.half()],
+            values: Aligned::zeros(period * self.width()),
+            packs: Aligned::zeros(self.half * self.width()),
+            missing: vec![0.0; self.half * (1 + self.machine.lanes())],
         }
     }
 
-    fn half(&self) -> usize {
-        self.period / 2 + 1
+    /// Transforms what is in the packs.
+    fn transform(&self, scratch: &mut Scratch) {
+        let Scratch { values, packs, .. } = scratch;
+        let width = self.width();
+        values[..packs.len()].copy_from_slice(packs);
+        for (j, from) in packs.chunks_exact(width).enumerate().take(self.half - 1).skip(1) {
+            copy(from, &mut values[(2 * (self.half - 1) - j) * width..][..width]);
+        }
+        self.lines.forward(&self.machine, values);
+        for (to, [place, _]) in packs.chunks_exact_mut(width).zip(self.lines.opposite()) {
+            copy(&values[*place as usize * width..][..width], to);
+        }
     }
 
-    fn line(&self, line: &mut [f64], scratch: &mut Scratch) {
-        if self.period < 2 {
-            return;
-        }
-        scratch.even[..line.len()].copy_from_slice(line);
-        for j in line.len()..self.period {
-            scratch.even[j] = line[self.period - j];
-        }
-        let outcome =
-            self.plan.process_with_scratch(&mut scratch.even, &mut scratch.spectrum, &mut scratch.inner);
-        debug_assert!(outcome.is_ok(), "the buffers were made for this length");
-        for (value, transformed) in line.iter_mut().zip(&scratch.spectrum) {
-            *value = transformed.re;
+    /// Transforms lines that lie one behind the other.
+    fn rows(&self, lines: &mut [f64], scratch: &mut Scratch) {
+        let (half, lanes) = (self.half, self.machine.lanes());
+        for lines in lines.chunks_mut(half * self.width()) {
+            for part in 0..2 {
+                let mut these = [&scratch.missing[..half]; MOST];
+                let present = lines.chunks_exact(half).skip(part * lanes);
+                these[..lanes].iter_mut().zip(present).for_each(|(to, line)| *to = line);
+                let (lines, values) = (&these[..lanes], &mut scratch.packs[..]);
+                self.machine.run(FromReals { lines, count: half, values, first: part, stride: 2 });
+            }
+            self.transform(scratch);
+            for part in 0..2 {
+                let mut these: [&mut [f64]; MOST] = std::array::from_fn(|_| &mut [][..]);
+                let present = lines.chunks_exact_mut(half).skip(part * lanes).take(lanes);
+                let all = present.chain(scratch.missing[half..].chunks_exact_mut(half));
+                these[..lanes].iter_mut().zip(all).for_each(|(to, line)| *to = line);
+                let (lines, values) = (&mut these[..lanes], &scratch.packs[..]);
+                self.machine.run(ToReals { lines, count: half, values, first: part, stride: 2 });
+            }
         }
     }
 
     /// Transforms the columns of `rows`, pieces of equal width that lie one below the other.
     fn columns(&self, rows: &mut [&mut [f64]], scratch: &mut Scratch) {
-        let half = rows.len();
         let width = rows.first().map_or(0, |r| r.len());
-        let mut lines = std::mem::take(&mut scratch.lines);
-        for first in (0..width).step_by(LINES) {
-            let count = LINES.min(width - first);
-            for (j, row) in rows.iter().enumerate() {
-                for (c, value) in row[first..first + count].iter().enumerate() {
-                    lines[c * half + j] = *value;
-                }
+        for first in (0..width).step_by(self.width()) {
+            let count = self.width().min(width - first);
+            for (row, to) in rows.iter().zip(scratch.packs.chunks_exact_mut(self.width())) {
+                copy(&row[first..first + count], &mut to[..count]);
+                to[count..].fill(0.0);
             }
-            lines.chunks_exact_mut(half).take(count).for_each(|line| self.line(line, scratch));
-            for (j, row) in rows.iter_mut().enumerate() {
-                for (c, value) in row[first..first + count].iter_mut().enumerate() {
-                    *value = lines[c * half + j];
-                }
+            self.transform(scratch);
+            for (row, from) in rows.iter_mut().zip(scratch.packs.chunks_exact(self.width())) {
+                copy(&from[..count], &mut row[first..first + count]);
             }
         }
-        scratch.lines = lines;
+    }
+}
+
+/// Places of two packs of four are two moves of vectors and no call.
+fn copy(from: &[f64], to: &mut [f64]) {
+    match (<&[f64; 8]>::try_from(from), <&mut [f64; 8]>::try_from(&mut *to)) {
+        (Ok(from), Ok(to)) => *to = *from,
+        _ => to.copy_from_slice(from),
     }
 }
 
@@ -87,19 +111,21 @@ impl Cosine {
 pub(super) fn transform(values: &mut [f64], shape: [usize; 3], along: [bool; 3]) {
     let [nx, ny, nz] = shape;
     let cosines = shape.map(Cosine::new);
-    values.par_chunks_mut(ny * nz).for_each_init(
+    let along: [bool; 3] = std::array::from_fn(|a| along[a] && shape[a] > 1);
+    let together = if ny > 1 { ny * nz } else { nz * cosines[2].width() };
+    values.par_chunks_mut(together).for_each_init(
         || (cosines[1].scratch(), cosines[2].scratch()),
         |(for_y, for_z), plane| {
             if along[2] {
-                plane.chunks_exact_mut(nz).for_each(|line| cosines[2].line(line, for_z));
+                cosines[2].rows(plane, for_z);
             }
-            if along[1] && ny > 1 {
+            if along[1] {
                 let mut rows: Vec<&mut [f64]> = plane.chunks_exact_mut(nz).collect();
                 cosines[1].columns(&mut rows, for_y);
             }
         },
     );
-    if !along[0] || nx < 2 {
+    if !along[0] {
         return;
     }
     let mut pieces: Vec<Vec<&mut [f64]>> =

@@ -4,154 +4,154 @@ use super::aligned::Aligned;
 use super::axis::Axis;
 use super::engine::Engine;
 use super::real::Real;
-use super::recipe::Last;
-use crate::fft::{FromReals, MOST, Machine, Spectrum, Tangle, ToReals, Untangle};
+use super::recipe::{Last, Recipe};
+use crate::fft::{FromColumns, FromReals, MOST, Spectrum, Tangle, ToColumns, ToReals, Untangle};
 
-/// Scratch of one thread. Lines are transformed in groups, twice as many as there are lanes.
+/// Scratch of one thread. Two packs of lines are the real and the imaginary parts of one.
 pub(super) struct First<'a, T: Real> {
-    machine: &'a Machine,
-    x: &'a Axis<T>,
-    /// Numbers between the wave numbers of a slab; none where each line is a slab.
-    row: Option<usize>,
-    slab: usize,
+    engine: &'a Engine<T>,
+    /// Lines in packs.
+    reals: Aligned<T>,
     values: Aligned<T>,
-    /// The spectrum of a group where each line is a slab.
+    /// The spectrum of two packs, where the second direction is no direction.
     rows: Aligned<T>,
-    /// Zeros on the way there, the lines of a group that is not full on the way back.
-    spare: Aligned<T>,
+    /// Lines that there are not, zeros on the way there.
+    missing: Aligned<T>,
 }
 
-/// What spectra are multiplied by on the way back.
-pub(super) struct Factors<T> {
-    /// A factor of each wave number; one if none.
-    real: Option<Vec<T>>,
-    /// Whether it is times i.
-    turned: bool,
-}
+/// What spectra are multiplied by on the way back, for each wave number; one if none.
+pub(super) struct Factors<T>(Option<Vec<[T; 2]>>);
 
 impl<T: Real> Factors<T> {
-    pub(super) fn new(x: &Axis<T>, last: &Last) -> Self {
+    pub(super) fn new(x: &Axis<T>, recipe: &Recipe<T>, last: &Last) -> Self {
+        let phases = recipe.phases(0, last.shift);
+        if !last.along && last.sign == 1.0 && phases.is_none() {
+            return Self(None);
+        }
         let sign = T::rounded(last.sign);
-        let real = match (last.along, last.sign) {
-            (true, _) => Some(x.wave.iter().take(x.half()).map(|k| *k * sign).collect()),
-            (false, 1.0) => None,
-            (false, _) => Some(vec![sign; x.half()]),
+        let of = |k: usize| {
+            let [re, im] = phases.map_or([T::one(), T::zero()], |phases| phases[k]);
+            if last.along {
+                let wave = sign * x.wave[k];
+                [T::zero() - wave * im, wave * re]
+            } else {
+                [sign * re, sign * im]
+            }
         };
-        Self { real, turned: last.along }
+        Self(Some((0..x.half()).map(of).collect()))
     }
 }
 
 impl<'a, T: Real> First<'a, T> {
     pub(super) fn new(engine: &'a Engine<T>) -> Self {
-        let (machine, x) = (&engine.machine, &engine.axes[0]);
-        let group = Self::group(machine);
-        let flat = engine.axes[1].len == 1;
+        let (x, lanes) = (&engine.axes[0], engine.machine.lanes());
+        let width = 2 * lanes;
         Self {
-            machine,
-            x,
-            row: (!flat).then(|| engine.row()),
-            slab: engine.slab(),
-            values: Aligned::zeros(x.len * group),
-            rows: Aligned::zeros(if flat { x.half() * 2 * group } else { 0 }),
-            spare: Aligned::zeros(x.n * group),
+            engine,
+            reals: Aligned::zeros(x.n * width),
+            values: Aligned::zeros(x.len * width),
+            rows: Aligned::zeros(if engine.is_flat() { 2 * (x.half() + 1) * width } else { 0 }),
+            missing: Aligned::zeros(x.n * lanes),
         }
     }
 
-    /// Lines of a group.
-    pub(super) fn group(machine: &Machine) -> usize {
-        2 * machine.lanes()
+    /// Twice the spectra of the lines of a slab. Whether sums of lines are finite.
+    pub(super) fn forward(&mut self, lines: &[T], slab: &mut [T]) -> bool {
+        let engine = self.engine;
+        let (lanes, row) = (engine.machine.lanes(), engine.row());
+        if !engine.is_flat() {
+            let pairs = 0..engine.axes[1].n.div_ceil(2);
+            return pairs.fold(true, |finite, pair| {
+                let spectrum = Spectrum { rows: slab, row, at: pair * 4 * lanes };
+                self.pair_forward(lines, pair, spectrum) && finite
+            });
+        }
+        let mut rows = std::mem::take(&mut self.rows);
+        let finite = self.pair_forward(lines, 0, Spectrum { rows: &mut rows, row: 4 * lanes, at: 0 });
+        for part in 0..2 {
+            let (values, places) = (&rows[2 * part * lanes..], engine.packs.places());
+            let at = 2 * part * lanes * lanes;
+            engine.machine.run(ToColumns { values, places, columns: slab, pitch: row, at });
+        }
+        self.rows = rows;
+        finite
     }
 
-    /// Twice the spectra of lines, to the slabs that they belong to.
-    pub(super) fn forward(&mut self, lines: &[T], slabs: &mut [T]) {
-        let group = Self::group(self.machine);
-        if let Some(row) = self.row {
-            for (index, lines) in lines.chunks(group * self.x.n).enumerate() {
-                self.group_forward(lines, Spectrum { rows: slabs, row, at: index * group });
+    /// The lines of a slab.
+    pub(super) fn inverse(&mut self, slab: &[T], factors: &Factors<T>, lines: &mut [T]) {
+        let engine = self.engine;
+        let (lanes, row) = (engine.machine.lanes(), engine.row());
+        if !engine.is_flat() {
+            for pair in 0..engine.axes[1].n.div_ceil(2) {
+                self.pair_inverse(slab, [row, 4 * pair * lanes], factors, lines, pair);
             }
             return;
         }
         let mut rows = std::mem::take(&mut self.rows);
-        self.group_forward(lines, Spectrum { rows: &mut rows, row: 2 * group, at: 0 });
-        for (column, slab) in slabs.chunks_exact_mut(self.slab).enumerate() {
-            for (to, from) in slab.as_chunks_mut::<2>().0.iter_mut().zip(rows.chunks_exact(2 * group)) {
-                *to = [from[2 * column], from[2 * column + 1]];
-            }
+        for part in 0..2 {
+            let (values, places) = (&mut rows[2 * part * lanes..], engine.packs.places());
+            let at = 2 * part * lanes * lanes;
+            engine.machine.run(FromColumns { columns: slab, places, pitch: row, at, values });
         }
+        self.pair_inverse(&rows, [4 * lanes, 0], factors, lines, 0);
         self.rows = rows;
     }
 
-    /// Lines from their slabs.
-    pub(super) fn inverse(&mut self, slabs: &[T], factors: &Factors<T>, lines: &mut [T]) {
-        let group = Self::group(self.machine);
-        if let Some(row) = self.row {
-            for (index, lines) in lines.chunks_mut(group * self.x.n).enumerate() {
-                self.group_inverse(slabs, row, index * group, factors, lines);
-            }
-            return;
-        }
-        let mut rows = std::mem::take(&mut self.rows);
-        rows.fill(T::zero());
-        for (column, slab) in slabs.chunks_exact(self.slab).enumerate() {
-            for (from, to) in slab.as_chunks::<2>().0.iter().zip(rows.chunks_exact_mut(2 * group)) {
-                [to[2 * column], to[2 * column + 1]] = *from;
-            }
-        }
-        self.group_inverse(&rows, 2 * group, 0, factors, lines);
-        self.rows = rows;
+    /// The lines of one of the packs that are transformed together.
+    fn lines<'l>(&self, lines: &'l [T], pair: usize, part: usize) -> impl Iterator<Item = &'l [T]> {
+        let (n, [stride, line]) = (self.engine.axes[0].n, self.places(pair, part));
+        let skip = if self.engine.is_flat() { line } else { 0 };
+        let within = if self.engine.is_flat() { 0 } else { line };
+        lines.chunks(stride * n).skip(skip).filter_map(move |lines| lines.chunks_exact(n).nth(within))
     }
 
-    /// What is missing in a group is zero: lines share transforms, in which the larger one leaves its round-off in the other.
-    fn group_forward(&mut self, lines: &[T], spectrum: Spectrum<'_, T>) {
-        let Self { machine, x, values, spare, .. } = self;
+    /// How far lines of a pack are apart, and the first of them.
+    fn places(&self, pair: usize, part: usize) -> [usize; 2] {
+        if self.engine.is_flat() {
+            [1, part * self.engine.machine.lanes()]
+        } else {
+            [self.engine.axes[1].n, 2 * pair + part]
+        }
+    }
+
+    /// What is missing in a pack is zero: lines share transforms, in which the larger one leaves its round-off in the other.
+    fn pair_forward(&mut self, lines: &[T], pair: usize, spectrum: Spectrum<'_, T>) -> bool {
+        let (machine, x) = (&self.engine.machine, &self.engine.axes[0]);
         let lanes = machine.lanes();
         for part in 0..2 {
-            let mut these = [&spare[..x.n]; MOST];
-            for (to, column) in these.iter_mut().zip(machine.columns()) {
-                if let Some(line) = lines.chunks_exact(x.n).nth(part * lanes + column) {
-                    *to = line;
-                }
-            }
-            let lines = &these[..lanes];
+            let mut these = [&self.missing[..x.n]; MOST];
+            these[..lanes].iter_mut().zip(self.lines(lines, pair, part)).for_each(|(to, line)| *to = line);
+            let (lines, values) = (&these[..lanes], &mut self.reals[..]);
             machine.run(FromReals { lines, count: x.own(), values, first: part, stride: 2 });
         }
-        let width = 2 * lanes;
-        values[x.own() * width..x.filled() * width].fill(T::zero());
-        x.continue_packs(values, width);
-        x.lines.forward(machine, values, x.halved);
-        machine.run(Untangle { values, places: x.lines.opposite(), spectrum });
+        x.forward(machine, &self.reals, &mut self.values);
+        machine.run(Untangle { values: &self.values, places: x.lines.opposite(), spectrum });
+        self.values[..2 * lanes].iter().all(|sum| sum.widened().is_finite())
     }
 
-    fn group_inverse(&mut self, rows: &[T], row: usize, at: usize, factors: &Factors<T>, lines: &mut [T]) {
-        let (places, turned) = (self.x.lines.opposite(), factors.turned);
-        let (machine, values) = (self.machine, &mut self.values[..]);
-        machine.run(Tangle { values, places, rows, row, at, factors: factors.real.as_deref(), turned });
-        self.x.lines.inverse(machine, values, self.x.halved);
-        if lines.len() == self.spare.len() {
-            return self.store(lines);
-        }
-        let mut spare = std::mem::take(&mut self.spare);
-        self.store(&mut spare);
-        lines.copy_from_slice(&spare[..lines.len()]);
-        self.spare = spare;
-    }
-
-    /// A whole group of lines from packs; beyond a period they begin again.
-    fn store(&self, lines: &mut [T]) {
-        let (n, lanes) = (self.x.n, self.machine.lanes());
-        let count = n.min(self.x.len);
-        for (part, lines) in lines.chunks_exact_mut(lanes * n).enumerate() {
+    fn pair_inverse(
+        &mut self,
+        rows: &[T],
+        [row, at]: [usize; 2],
+        factors: &Factors<T>,
+        lines: &mut [T],
+        pair: usize,
+    ) {
+        let (machine, x) = (&self.engine.machine, &self.engine.axes[0]);
+        let lanes = machine.lanes();
+        let (values, places) = (&mut self.values[..], x.lines.opposite());
+        machine.run(Tangle { values, places, rows, row, at, factors: factors.0.as_deref() });
+        x.inverse(machine, values, &mut self.reals);
+        for part in 0..2 {
+            let [stride, line] = self.places(pair, part);
+            let (skip, within) = if self.engine.is_flat() { (line, 0) } else { (0, line) };
+            let present = lines.chunks_mut(stride * x.n).skip(skip);
+            let present = present.filter_map(|lines| lines.chunks_exact_mut(x.n).nth(within));
             let mut these: [&mut [T]; MOST] = std::array::from_fn(|_| &mut [][..]);
-            for (column, line) in lines.chunks_exact_mut(n).enumerate() {
-                if let Some(lane) = self.machine.columns().iter().position(|c| *c == column) {
-                    these[lane] = line;
-                }
-            }
-            let lines = &mut these[..lanes];
-            self.machine.run(ToReals { lines, count, values: &self.values, first: part, stride: 2 });
-            for line in lines {
-                line.copy_within(..n - count, count);
-            }
+            let all = present.take(lanes).chain(self.missing.chunks_exact_mut(x.n));
+            these[..lanes].iter_mut().zip(all).for_each(|(to, line)| *to = line);
+            let (lines, values) = (&mut these[..lanes], &self.reals[..]);
+            machine.run(ToReals { lines, count: x.n, values, first: part, stride: 2 });
         }
     }
 }

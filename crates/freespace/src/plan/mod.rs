@@ -12,6 +12,7 @@ mod first;
 mod memory;
 mod octant;
 mod output;
+mod packs;
 mod real;
 mod recipe;
 mod tile;
@@ -107,7 +108,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let params = params.into();
         let layout = Layout::with_boundaries(mesh, params.boundaries)?;
-        let engine = build::engine(mesh, &layout, params.kernel, params.memory_mb)?;
+        let engine = build::planned(mesh, &layout, params.kernel, params.memory_mb)?;
         let closed = layout.is_closed::<D>().then(|| {
             (
                 std::array::from_fn(|a| layout.lines[slot::<D>(a)].weights(mesh.points()[a])),
@@ -189,25 +190,46 @@ impl<const D: usize, T: Real> Plan<D, T> {
         workspace: &mut Workspace<T>,
         outputs: &mut Vec<Vec<T>>,
     ) -> Result<(), FreeSpaceError> {
+        let wanted: Vec<(Output, [f64; D])> = wanted.iter().map(|&output| (output, shift)).collect();
+        self.solve_at(sources, &wanted, workspace, outputs)
+    }
+
+    /// The same with a shift for each output. Outputs share all transforms up to the direction that they differ in, the first of the mesh
+    /// last: phi at eight places of each cell takes two transforms of the third direction, four of the second and eight of the
+    /// first. Each array of the second direction takes as much memory as the spectra of a source.
+    ///
+    /// # Errors
+    /// As for [`Self::solve`].
+    pub fn solve_at(
+        &self,
+        sources: &[&[T]],
+        wanted: &[(Output, [f64; D])],
+        workspace: &mut Workspace<T>,
+        outputs: &mut Vec<Vec<T>>,
+    ) -> Result<(), FreeSpaceError> {
+        // Values that are not finite show in the sums of lines, unless some are not looked at.
+        let later = self.engine.axes.iter().all(|axis| axis.own() == axis.n);
         for source in sources {
-            check_values("source", source, self.mesh.len())?;
+            if !later || source.len() != self.mesh.len() {
+                check_values("source", source, self.mesh.len())?;
+            }
             self.check_mean(source)?;
         }
-        let wanted: Vec<Wanted> =
-            wanted.iter().map(|&output| self.wanted(output, sources.len())).collect::<Result<_, _>>()?;
-        let phases = shift.iter().any(|s| *s != 0.0).then(|| {
-            let mut along = [0.0; 3];
-            (0..D).for_each(|a| along[slot::<D>(a)] = shift[a]);
-            let [x, y, z] = &self.engine.axes;
-            [x.phases(along[0]), y.phases_at(along[1]), z.phases_at(along[2])]
-        });
+        let wanted: Vec<Wanted> = wanted
+            .iter()
+            .map(|&(output, shift)| self.wanted(output, shift, sources.len()))
+            .collect::<Result<_, _>>()?;
         outputs.resize_with(wanted.len(), Vec::new);
-        self.engine.run(sources, &Recipe::new(wanted, phases), &mut workspace.spectra, outputs);
+        let recipe = Recipe::new(wanted, &self.engine.axes);
+        if !self.engine.run(sources, &recipe, &mut workspace.spectra, outputs) {
+            sources.iter().try_for_each(|source| check_values("source", source, self.mesh.len()))?;
+            return Err(FreeSpaceError::Overflow);
+        }
         Ok(())
     }
 
     /// An output in terms of the engine.
-    fn wanted(&self, output: Output, sources: usize) -> Result<Wanted, FreeSpaceError> {
+    fn wanted(&self, output: Output, shift: [f64; D], sources: usize) -> Result<Wanted, FreeSpaceError> {
         let mut terms = output.terms::<D>(sources)?;
         terms.iter_mut().for_each(|t| t.axis = t.axis.map(slot::<D>));
         if output.is_estimate() && self.engine.estimate.is_none() {
@@ -215,7 +237,9 @@ impl<const D: usize, T: Real> Plan<D, T> {
                 what: "only plans of Gaussian kernels have an estimate of the error".to_owned(),
             });
         }
-        Ok(Wanted { terms, estimate: output.is_estimate() })
+        let mut along = [0.0; 3];
+        (0..D).for_each(|a| along[slot::<D>(a)] = shift[a]);
+        Ok(Wanted { terms, estimate: output.is_estimate(), shift: along })
     }
 
     fn check_mean(&self, source: &[T]) -> Result<(), FreeSpaceError> {

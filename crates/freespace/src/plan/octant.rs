@@ -3,6 +3,8 @@
 use rayon::prelude::*;
 
 use super::cosine;
+use super::packs::Packs;
+use super::real::Real;
 use crate::error::FreeSpaceError;
 use crate::kernel::{Radial, Screened, Truncated};
 
@@ -40,6 +42,36 @@ impl Octant {
         cosine::transform(&mut octant.values, half, [true; 3]);
         octant.values.par_iter_mut().for_each(|v| *v /= all);
         octant
+    }
+}
+
+impl Octant {
+    /// Divided by `all`, in the order that columns are multiplied in: for each wave number of the first direction (none where there is
+    /// no second one), block of packs and wave number of the third, one number for each lane.
+    pub(super) fn packed<T: Real>(self, half: [usize; 3], packs: &Packs, all: f64) -> Vec<T> {
+        let (lanes, flat) = (packs.lanes(), half[1] == 1);
+        let size = lanes * half[2];
+        let planes = if flat { 1 } else { half[0] };
+        let of: Vec<Vec<_>> = packs.of_blocks().map(|pack| packs.magnitudes(pack).collect()).collect();
+        let mut kernel = vec![T::zero(); planes * of.len() * size];
+        kernel.par_chunks_mut(of.len() * size).enumerate().for_each(|(plane, kernel)| {
+            for (columns, kernel) in of.iter().zip(kernel.chunks_exact_mut(size)) {
+                let line = |k: usize| &self.values[(plane * half[1] + k) * half[2]..][..half[2]];
+                if let [Some(a), Some(b), Some(c), Some(d)] = columns[..] {
+                    let lines = line(a).iter().zip(line(b)).zip(line(c)).zip(line(d));
+                    for (to, (((a, b), c), d)) in kernel.as_chunks_mut::<4>().0.iter_mut().zip(lines) {
+                        *to = [a / all, b / all, c / all, d / all].map(T::rounded);
+                    }
+                    continue;
+                }
+                for (lane, column) in columns.iter().enumerate() {
+                    let to = kernel.iter_mut().skip(lane).step_by(lanes);
+                    let line = column.map_or(&[][..], line);
+                    to.zip(line).for_each(|(to, g)| *to = T::rounded(g / all));
+                }
+            }
+        });
+        kernel
     }
 }
 
@@ -127,14 +159,19 @@ fn sample_radial(kernel: &dyn Radial, shape: [usize; 3], spacing: [f64; 3]) -> V
 
 /// Distances between the points of cubes are `h sqrt(i)`.
 fn sample_cubes(kernel: &dyn Radial, shape: [usize; 3], spacing: f64) -> Vec<f64> {
+    // Directions of equal length: the order of i, j and k does not matter.
+    let flat = shape[1] == 1 && shape[0] == shape[2];
+    let first = |i: usize, j: usize| match () {
+        () if flat => i,
+        () if shape[1] == shape[2] => j,
+        () => 0,
+    };
     let farthest: usize = shape.iter().map(|&n| (n - 1) * (n - 1)).sum();
     let mut occurs = vec![false; farthest + 1];
     for i in 0..shape[0] {
         for j in 0..shape[1] {
             let here = i * i + j * j;
-            // Directions of equal length: the order of i, j and k does not matter.
-            let first = if shape[1] == shape[2] { j } else { 0 };
-            (first..shape[2]).for_each(|k| occurs[here + k * k] = true);
+            (first(i, j)..shape[2]).for_each(|k| occurs[here + k * k] = true);
         }
     }
     let table: Vec<f64> = occurs
@@ -146,9 +183,31 @@ fn sample_cubes(kernel: &dyn Radial, shape: [usize; 3], spacing: f64) -> Vec<f64
     let mut values = vec![0.0; shape.iter().product()];
     values.par_chunks_mut(shape[2]).enumerate().for_each(|(line, out)| {
         let (i, j) = (line / shape[1], line % shape[1]);
-        out.iter_mut().enumerate().for_each(|(k, value)| *value = table[i * i + j * j + k * k]);
+        let own = out.iter_mut().enumerate().skip(if flat { i } else { 0 });
+        own.for_each(|(k, value)| *value = table[i * i + j * j + k * k]);
     });
+    if flat {
+        mirror(&mut values, shape[2]);
+    }
     values
+}
+
+/// Rows that are worked on together.
+const ROWS: usize = 16;
+
+/// What is below the diagonal of a square, from what is above it.
+fn mirror(values: &mut [f64], n: usize) {
+    for start in (0..n).step_by(ROWS) {
+        let count = ROWS.min(n - start);
+        let (above, rows) = values.split_at_mut(start * n);
+        for (k, from) in above.chunks_exact(n).enumerate() {
+            let from = &from[start..start + count];
+            from.iter().zip(rows.chunks_exact_mut(n)).for_each(|(value, row)| row[k] = *value);
+        }
+        for i in 0..count {
+            (0..i).for_each(|k| rows[i * n + start + k] = rows[k * n + start + i]);
+        }
+    }
 }
 
 /// The corner of an array.

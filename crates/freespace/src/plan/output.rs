@@ -58,6 +58,8 @@ pub(super) struct Wanted {
     pub(super) terms: Vec<Term>,
     /// The estimate of the error instead of the kernel.
     pub(super) estimate: bool,
+    /// Where it is wanted, in spacings from the points.
+    pub(super) shift: [f64; 3],
 }
 
 impl Output {
