@@ -2,7 +2,7 @@
 
 use meshless_freespace::{
     Centring, FreeSpaceError, Kernel, Mesh, Output, Patch, Plan, RefineParams, RefinedPlan, Superposition,
-    Workspace,
+    Workspace, suggest,
 };
 use proptest::prelude::*;
 
@@ -31,7 +31,18 @@ fn uniform<const D: usize>(
     source: impl Fn([f64; D]) -> f64,
     wanted: &[Output],
 ) -> Vec<Vec<f64>> {
-    let plan: Plan<D> = Plan::new(fine, Kernel::Gaussian { order, smoothing: Some(2.0) }).expect("a plan");
+    let plan = Plan::new(fine, Kernel::Gaussian { order, smoothing: Some(2.0) }).expect("a plan");
+    on_mesh(&plan, at, source, wanted)
+}
+
+/// Fields of a plan at points of its mesh.
+fn on_mesh<const D: usize>(
+    plan: &Plan<D>,
+    at: &Mesh<D>,
+    source: impl Fn([f64; D]) -> f64,
+    wanted: &[Output],
+) -> Vec<Vec<f64>> {
+    let fine = plan.mesh();
     let mut out = Vec::new();
     plan.solve(&[&fine.sample(source)], wanted, &mut Workspace::default(), &mut out).expect("fields");
     let place = |p: [f64; D], a: usize| ((p[a] - fine.coordinate(a, 0)) / fine.spacing()[a]).round() as usize;
@@ -112,6 +123,76 @@ fn nested_patches_and_interpolation() {
         let plan = RefinedPlan::new(&base, &[outer, inner], params(superposition)).expect("a plan");
         assert_eq!(plan.patches_of(1).collect::<Vec<_>>(), [2]);
         check(&plan, [64; 2], limit);
+    }
+}
+
+/// Cells of three different sides, points at corners, a ratio of 3: all ways of superposition in space.
+#[test]
+fn patches_in_space_with_unequal_cells() {
+    for (centring, ratio) in [(Centring::Node, 2), (Centring::Cell, 3)] {
+        let base = Mesh::of_box([-0.75; 3], [0.75; 3], [36, 32, 30], centring).expect("a mesh");
+        let patch = Patch::covering(&base, [-0.2, -0.15, -0.2], [0.15, 0.2, 0.15], ratio);
+        for (superposition, limit) in
+            [(Superposition::Shift, 1e-4), (Superposition::Lagrange(10), 1e-4), (Superposition::M6Star, 3e-3)]
+        {
+            let params = RefineParams { order: 4, tolerance: 1e-5, smoothing: Some(1.6), superposition };
+            let plan = RefinedPlan::new(&base, &[patch], params).expect("a plan");
+            let wanted = wanted(1);
+            let found = solve(&plan, blob, &wanted);
+            let fine = Mesh::of_box(base.min(), base.max(), base.cells().map(|n| n * ratio), centring);
+            let fine = fine.expect("a mesh");
+            let kernel = Kernel::Gaussian { order: 4, smoothing: Some(1.6) };
+            let expected = on_mesh(&Plan::new(&fine, kernel).expect("a plan"), plan.mesh(1), blob, &wanted);
+            for (found, expected) in found[1].iter().zip(&expected) {
+                let error = difference(found, expected);
+                assert!(error < limit, "{centring:?} {superposition:?}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn patches_may_overlap() {
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [64; 2], Centring::Cell).expect("a mesh");
+    let patches = [
+        Patch::covering(&base, [-0.5, -0.5], [0.25, 0.5], 2),
+        Patch::covering(&base, [-0.25, -0.25], [0.5, 0.5], 2),
+        Patch { parent: Some(0), first: [20, 30], cells: [20, 24], ratio: 2 },
+    ];
+    let plan = RefinedPlan::new(&base, &patches, params(Superposition::Shift)).expect("a plan");
+    check(&plan, [64; 2], 1e-11);
+}
+
+/// The estimate of a solve tells where to refine, and where not: what is left is below the tolerance everywhere.
+#[test]
+fn the_estimate_chooses_patches_to_a_tolerance() {
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [96; 2], Centring::Cell).expect("a mesh");
+    let order = 4;
+    let plan: Plan<2> = Plan::new(&base, Kernel::Gaussian { order, smoothing: Some(2.0) }).expect("a plan");
+    let asked = [Output::Potential { source: 0 }, Output::PotentialError { source: 0 }];
+    let estimated = on_mesh(&plan, &base, blob, &asked);
+    let exact = |mesh: &Mesh<2>, cells: usize| {
+        let fine = Mesh::of_box([-1.0; 2], [1.0; 2], [cells; 2], Centring::Cell).expect("a mesh");
+        on_mesh(&Plan::new(&fine, Kernel::Spectral).expect("a plan"), mesh, blob, &asked[..1]).remove(0)
+    };
+    let largest = estimated[0].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let tolerance = 0.1 * estimated[1].iter().fold(0.0_f64, |m, v| m.max(v.abs())) / largest;
+    let patches = suggest(&base, &estimated[1], &estimated[0], tolerance, 2).expect("patches");
+    let covered: usize = patches.iter().map(|p| p.cells.iter().product::<usize>()).sum();
+    assert!(!patches.is_empty() && covered < base.len() / 4, "{covered} of {} cells", base.len());
+    let refined = RefinedPlan::new(&base, &patches, RefineParams { order, ..RefineParams::default() });
+    let refined = refined.expect("a plan");
+    let fields = solve(&refined, blob, &asked[..1]);
+    let inside = |p: [f64; 2], mesh: &Mesh<2>| (0..2).all(|a| p[a] > mesh.min()[a] && p[a] < mesh.max()[a]);
+    for (index, field) in fields.iter().enumerate() {
+        let mesh = refined.mesh(index);
+        let exact = exact(mesh, if index == 0 { 96 } else { 192 });
+        for (point, (value, exact)) in field[0].iter().zip(&exact).enumerate() {
+            let finer = refined.patches_of(index).any(|i| inside(mesh.point(point), refined.mesh(i)));
+            let error = (value - exact).abs() / largest;
+            // The estimate is within some tenths of the error.
+            assert!(finer || error < 1.3 * tolerance, "mesh {index}: {error:e} for {tolerance:e}");
+        }
     }
 }
 

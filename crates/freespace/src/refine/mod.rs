@@ -8,6 +8,7 @@
 mod indicator;
 mod interpolate;
 mod patch;
+mod shift;
 mod taper;
 
 pub use indicator::suggest;
@@ -19,6 +20,7 @@ use crate::kernel::{BandPass, Gaussian};
 use crate::mesh::Mesh;
 use crate::plan::{Output, Plan, Workspace};
 use interpolate::interpolate;
+use shift::{Shifted, places};
 use taper::{TAPER, taper};
 
 /// Smoothing radius over the spacing: as in the paper. What a mesh finds must be smooth on its own scale to be
@@ -145,21 +147,12 @@ impl<const D: usize> RefinedPlan<D> {
         }
         let mut totals: Fields = Vec::with_capacity(self.levels.len());
         for (index, level) in self.levels.iter().enumerate() {
-            let own = self.solve_on(index, &sources[index], wanted, [0.0; D])?;
-            let mut total: Vec<Vec<f64>> = own.iter().map(|field| level.evaluated_part(field)).collect();
-            if let Some(parent) = level.parent {
-                match self.params.superposition {
-                    Superposition::Shift => self.add_shifted(index, sources, wanted, &mut total)?,
-                    how => {
-                        let parents = &self.levels[parent].evaluated;
-                        for (field, coarse) in total.iter_mut().zip(&totals[parent]) {
-                            let fine = level.taken_over(parents, coarse, how);
-                            field.iter_mut().zip(fine).for_each(|(f, c)| *f += c);
-                        }
-                    }
-                }
-            }
-            totals.push(total);
+            let own = self.solve_on(index, &sources[index], &placed(wanted, [0.0; D]))?;
+            totals.push(own.iter().map(|field| level.evaluated_part(field)).collect());
+        }
+        match self.params.superposition {
+            Superposition::Shift => self.add_shifted(sources, wanted, &mut totals)?,
+            how => self.add_interpolated(how, &mut totals),
         }
         for (level, total) in self.levels.iter().zip(&mut totals) {
             if level.margin > 0 {
@@ -175,8 +168,7 @@ impl<const D: usize> RefinedPlan<D> {
         &self,
         index: usize,
         sources: &[Vec<f64>],
-        wanted: &[Output],
-        shift: [f64; D],
+        wanted: &[(Output, [f64; D])],
     ) -> Result<Vec<Vec<f64>>, FreeSpaceError> {
         let plan = &self.levels[index].plan;
         // The source goes on beyond the band of a patch, but not beyond the base mesh.
@@ -189,51 +181,68 @@ impl<const D: usize> RefinedPlan<D> {
         };
         let sources: Vec<&[f64]> = sources.iter().map(Vec::as_slice).collect();
         let mut outputs = Vec::new();
-        plan.solve_shifted(&sources, wanted, shift, &mut Workspace::default(), &mut outputs)?;
+        plan.solve_at(&sources, wanted, &mut Workspace::default(), &mut outputs)?;
         Ok(outputs)
     }
 
-    /// Adds what all meshes above `index` found, evaluated at its points.
+    /// Adds what parents found to their patches, parents first.
+    fn add_interpolated(&self, how: Superposition, totals: &mut Fields) {
+        for (index, level) in self.levels.iter().enumerate() {
+            let Some(parent) = level.parent else { continue };
+            let (above, below) = totals.split_at_mut(index);
+            let Some(total) = below.first_mut() else { continue };
+            for (field, coarse) in total.iter_mut().zip(&above[parent]) {
+                let fine = level.taken_over(&self.levels[parent].evaluated, coarse, how);
+                field.iter_mut().zip(fine).for_each(|(f, c)| *f += c);
+            }
+        }
+    }
+
+    /// Adds what each mesh finds at the points of all patches within it. What patches with the same spacing need of a mesh is found once.
     fn add_shifted(
         &self,
-        index: usize,
         sources: &[Vec<Vec<f64>>],
         wanted: &[Output],
-        total: &mut [Vec<f64>],
+        totals: &mut Fields,
     ) -> Result<(), FreeSpaceError> {
-        let fine = &self.levels[index].evaluated;
-        let mut above = self.levels[index].parent;
-        while let Some(coarse) = above {
+        for coarse in 0..self.levels.len() {
             let mesh = self.source_mesh(coarse);
-            let places = fine.places_in(mesh);
-            let ratio: [usize; D] =
-                std::array::from_fn(|a| (mesh.spacing()[a] / fine.spacing()[a]).round() as usize);
-            for phase in 0..ratio.iter().product::<usize>() {
-                let mut rest = phase;
-                let first = ratio.map(|r| {
-                    let i = rest % r;
-                    rest /= r;
-                    i
-                });
-                // The fine points with these remainders are all shifted alike.
-                let at: [f64; D] = std::array::from_fn(|a| places(a, first[a]));
-                let shift = at.map(|p| p - p.round());
-                let fields = self.solve_on(coarse, &sources[coarse], wanted, shift)?;
-                for (field, total) in fields.iter().zip(total.iter_mut()) {
-                    for (point, value) in total.iter_mut().enumerate() {
-                        let i = fine.indices(point);
-                        if (0..D).all(|a| i[a] % ratio[a] == first[a]) {
-                            let near: [usize; D] =
-                                std::array::from_fn(|a| (places(a, i[a]) - shift[a]).round() as usize);
-                            *value += field[mesh.index(near)];
+            let mut within: Vec<usize> = self.within(coarse).collect();
+            while let Some(&first) = within.first() {
+                let alike = |&i: &usize| self.levels[i].mesh.spacing() == self.levels[first].mesh.spacing();
+                let patches: Vec<usize> = within.iter().copied().filter(alike).collect();
+                within.retain(|i| !alike(i));
+                let fine: Vec<&Mesh<D>> = patches.iter().map(|&i| &self.levels[i].evaluated).collect();
+                for places in places(mesh, &fine) {
+                    let at: Vec<(Output, [f64; D])> =
+                        places.iter().flat_map(|place| placed(wanted, *place)).collect();
+                    let fields = self.solve_on(coarse, &sources[coarse], &at)?;
+                    for (place, fields) in places.iter().zip(fields.chunks(wanted.len().max(1))) {
+                        for &patch in &patches {
+                            let shifted = Shifted::new(mesh, &self.levels[patch].evaluated, *place);
+                            for (field, total) in fields.iter().zip(&mut totals[patch]) {
+                                shifted.add(field, total);
+                            }
                         }
                     }
                 }
             }
-            above = self.levels[coarse].parent;
         }
         Ok(())
     }
+
+    /// The patches within a mesh, and those within them.
+    fn within(&self, index: usize) -> impl Iterator<Item = usize> {
+        (index + 1..self.levels.len()).filter(move |&i| {
+            let above = std::iter::successors(self.levels[i].parent, |p| self.levels[*p].parent);
+            above.into_iter().any(|p| p == index)
+        })
+    }
+}
+
+/// Outputs at one place.
+fn placed<const D: usize>(wanted: &[Output], place: [f64; D]) -> Vec<(Output, [f64; D])> {
+    wanted.iter().map(|&output| (output, place)).collect()
 }
 
 impl<const D: usize> Level<D> {
