@@ -6,6 +6,7 @@ use meshless::scene::Scene;
 use meshless::{Error, Silent, execute};
 
 const CHARGE: &str = include_str!("../../examples/charge.toml");
+const RING: &str = include_str!("../../examples/vortex-ring.toml");
 
 fn solve(scene: &Scene) -> Report {
     let plan = Plan::new(scene).expect("a plan");
@@ -126,4 +127,141 @@ fn what_free_space_does_not_have_is_refused() {
     assert!(plan(CHARGE.replace("diffusivity = 1", "diffusivity = \"1 + x^2\"")).contains("one constant"));
     assert!(plan(CHARGE.replace("spacing = 0.02", "spacing = \"0.02 + x^2\"")).contains("one number"));
     assert!(plan(CHARGE.replace("spacing = 0.02", "spacing = 1e-5")).contains("points"));
+}
+
+/// The charge of the example as a vorticity, with its potential as the stream function.
+fn vortex(also: &str) -> Scene {
+    let text = CHARGE.replace("source =", &format!("{also}vorticity =")).replace("exact =", "# exact =");
+    parse(&text.replace("plot = true", "vtu = true\ncsv = true"))
+}
+
+/// `exp(-10/(1 - r^2))` and its derivatives.
+fn bump([x, y]: [f64; 2]) -> [f64; 3] {
+    let u = 1.0 - x * x - y * y;
+    let f = if u > 0.0 { (-10.0 / u).exp() } else { 0.0 };
+    [f, -20.0 * x / (u * u) * f, -20.0 * y / (u * u) * f]
+}
+
+#[test]
+fn a_vorticity_has_a_velocity_and_only_that_is_transformed() {
+    let scene = vortex("");
+    let plan = Plan::new(&scene).expect("a plan");
+    let transforms = plan.transforms().expect("free space");
+    assert_eq!(transforms, [vec!["vorticity"], vec!["velocity x", "velocity y"]]);
+    assert!(plan.to_string().contains("forward: vorticity; back: velocity x, velocity y\n"), "{plan}");
+    assert!(plan.runs(Stage::Velocity) && plan.runs(Stage::Csv) && !plan.runs(Stage::Gradient));
+    let solution = execute(&scene, &plan, &mut Silent).expect("a solution");
+    let velocity = solution.field.velocity.as_ref().expect("a velocity");
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for (p, v) in solution.field.points.iter().zip(velocity) {
+        let [_, slope_x, slope_y] = bump([p[0], p[1]]);
+        worst = worst.max((v[0] - slope_y).hypot(v[1] + slope_x));
+        largest = largest.max(slope_x.hypot(slope_y));
+    }
+    assert!(worst < 1e-8 * largest, "{:e}", worst / largest);
+    let speed = solution.report.speed.as_ref().expect("a speed");
+    assert!((speed.max / largest - 1.0).abs() < 1e-8);
+    // Files have the same numbers.
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = meshless::write_outputs(&plan, &solution, folder.path(), "vortex").expect("files");
+    assert_eq!(files.len(), 2);
+    let text = std::fs::read_to_string(folder.path().join("vortex.csv")).expect("a file");
+    assert_eq!(text.lines().next(), Some("x,y,u,velocity_x,velocity_y"));
+    assert_eq!(text.lines().count(), 1 + 110 * 110);
+    let line = text.lines().nth(1 + 6000).expect("a line");
+    let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    assert_eq!(numbers[3..], velocity[6000][..2]);
+    let vtu = std::fs::read(folder.path().join("vortex.vtu")).expect("a file");
+    assert!(String::from_utf8_lossy(&vtu).contains("velocity"));
+}
+
+#[test]
+fn a_source_adds_its_gradient_to_the_velocity() {
+    let mut scene = vortex("source = \"exp(-20*((x - 0.2)^2 + y^2)*2)\"\n");
+    scene.probes = vec![vec![0.31, -0.17], vec![1.4, 0.3]];
+    let plan = Plan::new(&scene).expect("a plan");
+    let [forward, back] = plan.transforms().expect("free space");
+    assert_eq!(forward, ["vorticity", "source"]);
+    assert_eq!(back, ["velocity x", "velocity y", "u", "gradient x", "gradient y"]);
+    let report = execute(&scene, &plan, &mut Silent).expect("a solution").report;
+    for probe in &report.probes {
+        let (x, y) = (probe.at[0], probe.at[1]);
+        // A Gaussian charge of width s has within r what `1 - exp(-r^2 / 2 s^2)` of it is.
+        let (r2, s2) = ((x - 0.2) * (x - 0.2) + y * y, 1.0 / 80.0);
+        let away = s2 * (1.0 - (-r2 / (2.0 * s2)).exp()) / r2;
+        let [_, slope_x, slope_y] = bump([x, y]);
+        let v = probe.velocity.as_ref().expect("a velocity");
+        let error = (v[0] - slope_y - away * (x - 0.2)).hypot(v[1] + slope_x - away * y);
+        assert!(error < 1e-11, "{:?}: {error:e}", probe.at);
+    }
+}
+
+#[test]
+fn a_ring_blows_through_itself() {
+    let scene = parse(RING);
+    let plan = Plan::new(&scene).expect("a plan");
+    assert_eq!(plan.transforms().expect("free space")[0].len(), 3);
+    let solution = execute(&scene, &plan, &mut Silent).expect("a solution");
+    let velocity = solution.field.velocity.as_ref().expect("a velocity");
+    // The law of Biot and Savart on the axis, by sums over the same source: v_z = int r^2 g / 2 (r^2 + (z - h)^2)^(3/2).
+    let on_axis = |h: f64| {
+        let n = 400;
+        let step = [1.05 / f64::from(n), 1.6 / f64::from(n)];
+        let mut sum = 0.0;
+        for i in 0..n {
+            for k in 0..n {
+                let (r, z) = ((f64::from(i) + 0.5) * step[0], (f64::from(k) + 0.5) * step[1] - 0.8);
+                let around = r * (-50.0 * ((r * r - 0.25).powi(2) + z * z)).exp();
+                sum += around * r * r / (2.0 * (r * r + (z - h).powi(2)).powf(1.5));
+            }
+        }
+        sum * step[0] * step[1]
+    };
+    let error = |report: &Report| {
+        report.probes.iter().fold(0.0_f64, |worst, probe| {
+            let v = probe.velocity.as_ref().expect("a velocity");
+            assert!(v[0].abs() + v[1].abs() < 1e-12, "{v:?}");
+            worst.max((v[2] / on_axis(probe.at[2]) - 1.0).abs())
+        })
+    };
+    // In the middle, the integrand of the sum above is not smooth.
+    let middle = error(&solution.report);
+    assert!(middle < 1e-5, "{middle:e}");
+    let mut above = parse(RING);
+    above.probes = vec![vec![0.0, 0.0, 1.0], vec![0.0, 0.0, 3.0]];
+    let above = error(&solve(&above));
+    assert!(above < 1e-6, "{above:e}");
+    // Sums over all points and transforms know the same velocity.
+    let at = 42 * 42 * 17 + 42 * 9 + 30;
+    let mut there = parse(RING);
+    there.probes = vec![solution.field.points[at].to_vec()];
+    let probe = solve(&there).probes.remove(0).velocity.expect("a velocity");
+    let error = (0..3).fold(0.0_f64, |m, a| m.max((probe[a] - velocity[at][a]).abs()));
+    assert!(error < 1e-7 * solution.report.speed.expect("a speed").max, "{error:e}");
+}
+
+#[test]
+fn vorticities_that_cannot_be_are_refused() {
+    let said = |text: &str| Scene::parse(text, "scene.toml").expect_err("refused").to_string();
+    let with =
+        |text: &str| CHARGE.replace("diffusivity = 1", &format!("diffusivity = 1\nvorticity = {text}"));
+    assert!(said(&with("[\"x\", \"y\"]")).contains("vorticity"));
+    let in_space = |text: &str| {
+        let start = RING.find("vorticity = [").expect("a vorticity");
+        let end = start + RING[start..].find("]\n").expect("its end") + 2;
+        format!("{}vorticity = {text}\n{}", &RING[..start], &RING[end..])
+    };
+    assert!(said(&in_space("[\"x\", \"y\"]")).contains("expected 3 components, found 2"));
+    assert!(said(&in_space("\"x\"")).contains("vorticity"));
+    assert!(said(&in_space("[\"x\", \"y\", \"w\"]")).contains("`w`"));
+    let line = with("1").replace("dimension = 2", "dimension = 1");
+    let line = line.replace("[-1.1, -1.1]", "[-1.1]").replace("[1.1, 1.1]", "[1.1]");
+    assert!(said(&line.replace("y^2", "0")).contains("no curl in one dimension"));
+    let bounded =
+        with("1").replace("free_space", "box") + "\n[[boundaries]]\nface = \"all\"\ndirichlet = 0\n";
+    assert!(said(&bounded).contains("a vorticity is for free space"));
+    let scene = parse(&in_space("[\"log(x)\", 0, 0]"));
+    let plan = Plan::new(&scene).expect("a plan");
+    let error = execute(&scene, &plan, &mut Silent).expect_err("no logarithm").to_string();
+    assert!(error.contains("NaN") && error.contains("log(x)"), "{error}");
 }

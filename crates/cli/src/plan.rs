@@ -18,9 +18,18 @@ struct PlanJson<'a> {
     fallback: Option<&'static str>,
     refine_gaps_to: Option<f64>,
     solver: String,
+    /// In free space: what is transformed, and what is transformed back.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transforms: Option<TransformsJson>,
     stages: Vec<&'static str>,
     skipped: Vec<SkippedJson>,
     predicted: PredictedJson,
+}
+
+#[derive(Serialize)]
+struct TransformsJson {
+    forward: Vec<String>,
+    back: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -52,6 +61,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         fallback: plan.fallback.map(MethodName::as_str),
         refine_gaps_to: plan.refine_gaps_to,
         solver: plan.solver_name(),
+        transforms: plan.transforms().map(|[forward, back]| TransformsJson { forward, back }),
         stages: plan.stages.iter().map(|s| s.name()).collect(),
         skipped: plan.skipped.iter().map(|s| SkippedJson { what: s.what, why: s.why }).collect(),
         predicted: PredictedJson {

@@ -17,7 +17,7 @@ const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
 pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
     let scene = args.instead.read(&args.scene)?;
     let plan = Plan::new(&scene)?;
-    let writes = scene.output.vtu || scene.output.plot;
+    let writes = scene.output.vtu || scene.output.plot || scene.output.csv;
     if writes {
         prepare(&args.out)?;
     }
@@ -93,6 +93,9 @@ fn print(report: &Report, solution: &Solution) {
     );
     say!("contrast    {:.3e}", report.contrast);
     say!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
+    if let Some(speed) = &report.speed {
+        say!("speed       {:.6e} .. {:.6e}", speed.min, speed.max);
+    }
     let solver = &report.solver;
     say!("solver      {}, {} iterations, residual {:.1e}", solver.name, solver.iterations, solver.residual);
     if let Some(time) = &report.time {

@@ -68,6 +68,24 @@ impl Spectrum {
         Ok(Self { shells, spacing, dimension: D })
     }
 
+    /// The spectrum of several sources on one mesh together, such as the components of a vector.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn of_all<const D: usize>(mesh: &Mesh<D>, sources: &[&[f64]]) -> Result<Self, FreeSpaceError> {
+        let spacing = mesh.spacing().into_iter().fold(0.0, f64::max);
+        let mut all = Self { shells: Vec::new(), spacing, dimension: D };
+        for source in sources {
+            let one = Self::new(mesh, source)?;
+            // Shells of one mesh are the same.
+            all.shells.resize(all.shells.len().max(one.shells.len()), (0.0, 0.0));
+            for (sum, (k, power)) in all.shells.iter_mut().zip(one.shells) {
+                *sum = (k, sum.1 + power);
+            }
+        }
+        Ok(all)
+    }
+
     /// The error that is expected of a kernel: what it leaves out of the resolved wave numbers, the images of its
     /// spectrum, and what the mesh does not resolve.
     pub fn error(&self, kernel: Kernel) -> f64 {

@@ -140,3 +140,29 @@ fn truncated_kernels_know_the_period_that_they_need() {
         assert!((k.transform(0.0) - k.transform(near)).abs() < 1e-9);
     }
 }
+
+/// By the difference of sixth order with a step that balances its error with round-off.
+#[test]
+fn slopes_are_derivatives() {
+    fn check<const D: usize>(value: &dyn Fn(f64) -> f64, slope: &dyn Fn(f64) -> f64, what: &str) {
+        let step = 5e-3;
+        for r in [0.02, 0.3, 0.99, 1.01, 2.0, 5.0, 12.0, 30.0] {
+            let pair = |k: f64| value(r + k * step) - value(r - k * step);
+            let difference = (45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * step);
+            let error = (slope(r) - difference).abs();
+            assert!(error < 1e-12 * (1.0 + value(r).abs()), "{what} {D} {r}: {error:e}");
+        }
+        assert!(slope(0.0) == 0.0, "{what} {D}");
+    }
+    fn both<const D: usize>() {
+        for order in [2, 4, 10, 20] {
+            let kernel = Gaussian::<D>::new(order, 1.0).expect("an order");
+            check::<D>(&|r| kernel.value(r.abs()), &|r| kernel.slope(r), "Gaussian");
+        }
+        let kernel = Spectral::<D>::new(1.0).expect("a radius");
+        check::<D>(&|r| kernel.value(r.abs()), &|r| kernel.slope(r), "spectral");
+    }
+    both::<1>();
+    both::<2>();
+    both::<3>();
+}

@@ -15,6 +15,8 @@ pub struct NodalField {
     pub u: Vec<f64>,
     /// Its gradient, each node in its own region.
     pub gradient: Option<Vec<[f64; 3]>>,
+    /// The velocity, where the scene has a vorticity.
+    pub velocity: Option<Vec<[f64; 3]>>,
     /// The exact solution, where the scene has one.
     pub exact: Option<Vec<f64>>,
     /// The diffusivity.
@@ -43,6 +45,7 @@ impl NodalField {
             points: discrete.cloud.points().iter().map(padded).collect(),
             u: u.to_vec(),
             gradient: gradient.map(|g| g.iter().map(padded).collect()),
+            velocity: None,
             exact,
             estimate: None,
             eta: discrete.eta.clone(),

@@ -9,7 +9,7 @@ use crate::Error;
 use crate::execute::Solution;
 use crate::plan::{Plan, Stage};
 
-/// Writes what the plan says into `folder`, which must exist, as `stem.vtu` and `stem.svg`; returns the files.
+/// Writes what the plan says into `folder`, which must exist, as `stem.vtu`, `stem.csv` and `stem.svg`; returns the files.
 ///
 /// Every file is complete or absent.
 pub fn write_outputs(
@@ -26,6 +26,11 @@ pub fn write_outputs(
         if let Some(time) = &solution.report.time {
             files.extend(series(solution, time.end, folder, stem)?);
         }
+    }
+    if plan.runs(Stage::Csv) {
+        let path = folder.join(format!("{stem}.csv"));
+        write_text_atomically(&path, &csv(solution))?;
+        files.push(path);
     }
     if let Some(picture) = &solution.picture {
         let path = folder.join(format!("{stem}.svg"));
@@ -69,6 +74,28 @@ fn regions(solution: &Solution) -> VtuField {
     VtuField::integers("region", solution.field.region.iter().map(|&r| i64::from(r)).collect())
 }
 
+/// A line for each node: coordinates, u, its gradient and the velocity, as far as there are any. Numbers are read back as they are.
+fn csv(solution: &Solution) -> String {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    let field = &solution.field;
+    let axes = &AXES[..field.dimension];
+    let mut names: Vec<String> = axes.iter().map(|a| (*a).to_owned()).collect();
+    names.push("u".to_owned());
+    let vectors = [("gradient", &field.gradient), ("velocity", &field.velocity)];
+    let vectors = vectors.into_iter().filter_map(|(name, values)| values.as_ref().map(|v| (name, v)));
+    let vectors: Vec<(&str, &Vec<[f64; 3]>)> = vectors.collect();
+    names.extend(vectors.iter().flat_map(|(name, _)| axes.iter().map(move |a| format!("{name}_{a}"))));
+    let mut text = names.join(",") + "\n";
+    for (i, u) in field.u.iter().enumerate() {
+        let own = field.points[i][..axes.len()].iter().chain(std::iter::once(u));
+        let all = own.chain(vectors.iter().flat_map(|(_, v)| &v[i][..axes.len()]));
+        let line: Vec<String> = all.map(f64::to_string).collect();
+        text += &line.join(",");
+        text.push('\n');
+    }
+    text
+}
+
 fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
     let field = &solution.field;
     let mut fields = vec![
@@ -82,6 +109,9 @@ fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
     }
     if let Some(gradient) = &field.gradient {
         fields.push(VtuField::vectors("gradient", gradient));
+    }
+    if let Some(velocity) = &field.velocity {
+        fields.push(VtuField::vectors("velocity", velocity));
     }
     if let Some(diagnosis) = &field.diagnosis {
         let mut add = |name, of: fn(&NodeDiagnosis) -> f64| {

@@ -41,6 +41,9 @@ pub struct Report {
     pub accuracy: Option<AccuracyReport>,
     /// Smallest and largest value.
     pub extrema: Extrema,
+    /// Smallest and largest magnitude of the velocity, where the scene has a vorticity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<Extrema>,
     /// How the linear system was solved.
     pub solver: SolverReport,
     /// How nodes were treated.
@@ -236,4 +239,7 @@ pub struct Probe {
     pub at: Vec<f64>,
     /// The value; absent where the point lies outside of the domain.
     pub value: Option<f64>,
+    /// The velocity, where the scene has a vorticity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<Vec<f64>>,
 }

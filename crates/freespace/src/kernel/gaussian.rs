@@ -104,6 +104,21 @@ impl<const D: usize> Gaussian<D> {
         self.sigma * self.sigma * self.height() * sum
     }
 
+    /// The derivative of the kernel with respect to the distance. Of the terms of a higher order,
+    /// `d/dx [L_n^(a)(x) e^-x] = -L_n^(a+1)(x) e^-x`.
+    pub fn slope(&self, r: f64) -> f64 {
+        let (x, rho) = (self.scaled(r), r / self.sigma);
+        let second = match D {
+            1 => -0.5 * libm::erf(rho * FRAC_1_SQRT_2),
+            _ if rho < f64::MIN_POSITIVE => 0.0,
+            2 => libm::expm1(-x) / (2.0 * PI * r),
+            _ => -enclosed(rho) / (4.0 * PI * r * r),
+        };
+        let terms = laguerre(D as f64 / 2.0, x).zip(1..self.order / 2);
+        let sum: f64 = terms.map(|(l, j)| l / (2 * j) as f64).sum();
+        second - r * self.height() * (-x).exp() * sum
+    }
+
     /// `G_2`
     fn second_order(&self, r: f64, x: f64) -> f64 {
         let rho = r / self.sigma;
@@ -115,6 +130,21 @@ impl<const D: usize> Gaussian<D> {
             _ => libm::erf(rho / SQRT_2) / (4.0 * PI * r),
         }
     }
+}
+
+/// `erf(rho/sqrt 2) - sqrt(2/pi) rho e^(-rho^2/2)`, what a Gaussian in space has within rho.
+fn enclosed(rho: f64) -> f64 {
+    let (x, height) = (rho * rho / 2.0, (2.0 / PI).sqrt());
+    if rho > 1.0 {
+        return libm::erf(rho * FRAC_1_SQRT_2) - height * rho * (-x).exp();
+    }
+    let (mut term, mut sum, mut odd) = (rho.powi(3) / 3.0, 0.0, 3.0);
+    while sum + term > sum {
+        sum += term;
+        odd += 2.0;
+        term *= rho * rho / odd;
+    }
+    height * (-x).exp() * sum
 }
 
 impl<const D: usize> Radial for Gaussian<D> {

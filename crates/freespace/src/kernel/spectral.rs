@@ -4,7 +4,7 @@ use std::f64::consts::{LN_2, PI};
 
 use super::Radial;
 use crate::error::FreeSpaceError;
-use crate::special::{EULER, one_minus_j0_integral, sine_integral};
+use crate::special::{EULER, one_minus_j0, one_minus_j0_integral, sine_integral};
 
 /// The Green's function without its wave numbers above `1/sigma`: the limit of infinite order.
 ///
@@ -25,6 +25,31 @@ impl<const D: usize> Spectral<D> {
         FreeSpaceError::unless_positive("smoothing radius", sigma)?;
         Ok(Self { sigma })
     }
+
+    /// The derivative of the kernel with respect to the distance.
+    pub fn slope(&self, r: f64) -> f64 {
+        let rho = r / self.sigma;
+        match D {
+            1 => -sine_integral(rho) / PI,
+            _ if rho < f64::MIN_POSITIVE => 0.0,
+            2 => -one_minus_j0(rho) / (2.0 * PI * r),
+            _ => sine_less_its_integral(rho) / (2.0 * PI * PI * r * r),
+        }
+    }
+}
+
+/// `sin u - Si u`, which is `-u^3 / 9` near zero.
+fn sine_less_its_integral(u: f64) -> f64 {
+    if u > 1.0 {
+        return u.sin() - sine_integral(u);
+    }
+    let (mut power, mut sum) = (u, 0.0);
+    for n in 1..12 {
+        let odd = f64::from(2 * n + 1);
+        power *= -u * u / (odd * (odd - 1.0));
+        sum += power * (1.0 - 1.0 / odd);
+    }
+    sum
 }
 
 impl<const D: usize> Radial for Spectral<D> {

@@ -141,6 +141,28 @@ pub(crate) fn nodal_source<const D: usize>(
     Ok(source)
 }
 
+/// A component of the vorticity at every node.
+pub(crate) fn nodal_vorticity<const D: usize>(
+    scene: &Scene,
+    component: usize,
+    points: &[[f64; D]],
+    labels: &[u16],
+) -> Result<Vec<f64>, Error> {
+    let mut values = vec![0.0; points.len()];
+    for (region, spec) in scene.regions.iter().enumerate() {
+        if let Some(spec) = spec.vorticity.get(component) {
+            scatter(&field(&spec.expr), region, points, labels, &mut values);
+        }
+    }
+    for (i, value) in values.iter().enumerate() {
+        let spec = scene.regions[labels[i] as usize].vorticity.get(component);
+        if let (false, Some(spec)) = (value.is_finite(), spec) {
+            return Err(not_finite(scene, spec, *value, &points[i]));
+        }
+    }
+    Ok(values)
+}
+
 /// The exact solution and its gradient at every node.
 pub(crate) fn exact<const D: usize>(
     scene: &Scene,

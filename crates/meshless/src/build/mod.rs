@@ -12,7 +12,9 @@ mod survey;
 
 pub(crate) use checks::{check_interfaces_touch, check_regions_are_met};
 pub(crate) use conditions::{Boundary, missing_condition};
-pub(crate) use fields::{exact, field, jump_rates, jumps, materials, nodal_diffusivity, nodal_source};
+pub(crate) use fields::{
+    exact, field, jump_rates, jumps, materials, nodal_diffusivity, nodal_source, nodal_vorticity,
+};
 pub(crate) use mesh::{free_mesh, mesh_cells, particles};
 pub(crate) use points::{Placed, place};
 pub(crate) use shapes::{domain, regions, with_spacing_times};

@@ -98,7 +98,7 @@ pub(super) fn free_space(
     let run = |scene: &Scene| -> Result<CostRun, Error> {
         let mut plan = Plan::new(scene)?;
         // The gradient is for the errors only, and makes the convolution dearer.
-        plan.stages.retain(|s| !matches!(s, Stage::Plot | Stage::Vtu | Stage::Probes));
+        plan.stages.retain(|s| !matches!(s, Stage::Plot | Stage::Vtu | Stage::Csv | Stage::Probes));
         let solve = || Ok::<_, Error>(execute_once(scene, &plan, None, &mut Silent)?.report);
         let report = solve()?;
         let seconds = median(priced(&report.seconds), || Ok(priced(&solve()?.seconds)))?;

@@ -1,6 +1,7 @@
 //! Scenes in free space: a mesh, a convolution, and what is derived from the field.
 
 mod draw;
+mod probes;
 mod report;
 
 use std::time::Instant;
@@ -10,7 +11,7 @@ use meshless_freespace::{
 };
 
 use super::{Progress, Solution};
-use crate::plan::{FreeSpaceParams, MethodParams, Plan, Stage};
+use crate::plan::{FreeSpaceParams, MethodParams, Plan, Stage, Transforms};
 use crate::report::Seconds;
 use crate::scene::{GreenName, Scene, SpreadName};
 use crate::{Error, MAX_NODES, NodalField, build};
@@ -22,6 +23,17 @@ struct Source<const D: usize> {
     labels: Vec<u16>,
     /// Over the diffusivity.
     values: Vec<f64>,
+    /// Components of the vorticity, if there is one.
+    vorticity: Vec<Vec<f64>>,
+}
+
+impl<const D: usize> Source<D> {
+    /// What is transformed: the vorticity, and then the source.
+    fn transformed(&self, transforms: Transforms) -> Vec<&[f64]> {
+        let mut sources: Vec<&[f64]> = self.vorticity.iter().map(Vec::as_slice).collect();
+        sources.extend(transforms.source.then_some(&self.values[..]));
+        sources
+    }
 }
 
 /// The kernel that the source calls for, and the relative L2 error that is expected of it.
@@ -41,8 +53,9 @@ pub(super) fn execute<const D: usize>(
     progress.stage(Stage::Points);
     let params = match plan.method.params {
         MethodParams::FreeSpace(params) => params,
-        _ => FreeSpaceParams { kernel: None, order: None, sigma: None, tolerance: None },
+        _ => FreeSpaceParams::of(scene),
     };
+    let transforms = params.transforms;
     let start = Instant::now();
     let (source, chosen) = source(scene, params)?;
     seconds.points = start.elapsed().as_secs_f64();
@@ -51,43 +64,75 @@ pub(super) fn execute<const D: usize>(
     let convolution: Convolution<D> = Convolution::new(&source.mesh, chosen.kernel)?;
     seconds.assembly = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mut wanted = vec![Output::Potential { source: 0 }];
-    if plan.runs(Stage::Gradient) {
-        wanted.extend((0..D).map(|axis| Output::Gradient { source: 0, axis }));
-    }
     let mut fields = Vec::new();
-    convolution.solve(&[&source.values], &wanted, &mut Workspace::default(), &mut fields)?;
+    let sources = source.transformed(transforms);
+    convolution.solve(&sources, &outputs::<D>(transforms), &mut Workspace::default(), &mut fields)?;
+    let mut fields = fields.into_iter();
+    let velocity: Option<Vec<[f64; D]>> =
+        (transforms.vorticity > 0).then(|| vectors(&mut fields, source.points.len()));
+    let u = if transforms.potential { fields.next() } else { None };
+    let u = u.unwrap_or_else(|| vec![0.0; source.points.len()]);
     seconds.solve = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let gradient: Option<Vec<[f64; D]>> = plan
-        .runs(Stage::Gradient)
-        .then(|| (0..source.points.len()).map(|i| std::array::from_fn(|a| fields[1 + a][i])).collect());
-    let u = &fields[0];
+    let gradient: Option<Vec<[f64; D]>> =
+        transforms.gradient.then(|| vectors(&mut fields, source.points.len()));
     let exact =
         plan.runs(Stage::Errors).then(|| build::exact(scene, &source.points, &source.labels)).transpose()?;
     let errors = match (&exact, &gradient) {
-        (Some(exact), Some(gradient)) => Some(report::errors(scene, &source, u, gradient, exact)),
+        (Some(exact), Some(gradient)) => Some(report::errors(scene, &source, &u, gradient, exact)),
         _ => None,
     };
-    let probes = report::probes(scene, &source, chosen.kernel)?;
-    let picture = plan.runs(Stage::Plot).then(|| draw::draw(scene, &source, u)).transpose()?;
+    let probes = probes::probes(scene, &source, chosen.kernel, transforms)?;
+    let speed: Option<Vec<f64>> = velocity.as_ref().map(|v| v.iter().map(report::length).collect());
+    let drawn = speed.as_ref().map_or(("u", &u), |speed| ("speed", speed));
+    let picture = plan.runs(Stage::Plot).then(|| draw::draw(scene, &source, drawn)).transpose()?;
     seconds.post = start.elapsed().as_secs_f64();
     seconds.total = all.elapsed().as_secs_f64();
-    let report = report::report(scene, plan, &source, u, chosen, errors, seconds, probes);
+    let solved = report::Solved { u: &u, speed: speed.as_deref(), chosen, errors, probes };
+    let report = report::report(scene, plan, &source, solved, seconds);
     let pad = |p: &[f64; D]| std::array::from_fn(|a| if a < D { p[a] } else { 0.0 });
     let field = NodalField {
         estimate: None,
         dimension: D,
         points: source.points.iter().map(pad).collect(),
         gradient: gradient.map(|g| g.iter().map(pad).collect()),
+        velocity: velocity.map(|v| v.iter().map(pad).collect()),
         exact: exact.map(|e| e.values),
         eta: vec![diffusivity(scene); source.points.len()],
         region: source.labels,
         kind: Vec::new(),
         diagnosis: None,
-        u: fields.swap_remove(0),
+        u,
     };
     Ok(Solution { report, field, picture, frames: Vec::new() })
+}
+
+/// What is transformed back: the velocity, u and its gradient, as far as they are asked for.
+fn outputs<const D: usize>(transforms: Transforms) -> Vec<Output> {
+    let source = transforms.vorticity;
+    let each = |of: fn(usize) -> Output| (0..D).map(of);
+    let mut wanted: Vec<Output> = match (source, transforms.source) {
+        (0, _) => Vec::new(),
+        (_, true) => each(|axis| Output::Velocity { axis }).collect(),
+        (_, false) => each(|axis| Output::Curl { axis }).collect(),
+    };
+    if transforms.potential {
+        wanted.push(Output::Potential { source });
+    }
+    if transforms.gradient {
+        wanted.extend((0..D).map(|axis| Output::Gradient { source, axis }));
+    }
+    wanted
+}
+
+/// The next D fields as vectors.
+fn vectors<const D: usize>(fields: &mut impl Iterator<Item = Vec<f64>>, count: usize) -> Vec<[f64; D]> {
+    let mut vectors = vec![[0.0; D]; count];
+    for axis in 0..D {
+        let field = fields.next().unwrap_or_default();
+        vectors.iter_mut().zip(field).for_each(|(vector, value)| vector[axis] = value);
+    }
+    vectors
 }
 
 /// The one diffusivity; the plan has checked that there is one.
@@ -99,8 +144,8 @@ fn diffusivity(scene: &Scene) -> f64 {
 fn source<const D: usize>(scene: &Scene, params: FreeSpaceParams) -> Result<(Source<D>, Chosen), Error> {
     let mut times = 1;
     loop {
-        let source = sample(scene, times)?;
-        let spectrum = Spectrum::new(&source.mesh, &source.values)?;
+        let source = sample(scene, times, params.transforms)?;
+        let spectrum = Spectrum::of_all(&source.mesh, &source.transformed(params.transforms))?;
         let chosen = choose(&spectrum, params)?;
         let Some(tolerance) = params.tolerance.filter(|t| chosen.error > *t) else {
             return Ok((source, chosen));
@@ -114,7 +159,7 @@ fn source<const D: usize>(scene: &Scene, params: FreeSpaceParams) -> Result<(Sou
     }
 }
 
-fn sample<const D: usize>(scene: &Scene, times: usize) -> Result<Source<D>, Error> {
+fn sample<const D: usize>(scene: &Scene, times: usize, transforms: Transforms) -> Result<Source<D>, Error> {
     let mesh = build::free_mesh::<D>(scene, times)?;
     let points: Vec<[f64; D]> = (0..mesh.len()).map(|i| mesh.point(i)).collect();
     let regions = build::regions::<D>(scene)?;
@@ -131,7 +176,10 @@ fn sample<const D: usize>(scene: &Scene, times: usize) -> Result<Source<D>, Erro
     }
     let eta = diffusivity(scene);
     values.iter_mut().for_each(|value| *value /= eta);
-    Ok(Source { mesh, points, labels, values })
+    let vorticity = (0..transforms.vorticity)
+        .map(|component| build::nodal_vorticity(scene, component, &points, &labels))
+        .collect::<Result<_, _>>()?;
+    Ok(Source { mesh, points, labels, values, vorticity })
 }
 
 /// What the scene asks for, and of the rest the best.

@@ -47,6 +47,7 @@ pub(super) fn report<const D: usize>(
         estimate,
         accuracy: None,
         extrema: Extrema { min, max },
+        speed: None,
         solver: SolverReport {
             name: info.name.to_string(),
             iterations: info.iterations,

@@ -221,6 +221,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(scene.accuracy.is_some(), Stage::Refinement, "no error to reach is given");
     decide(scene.output.vtu, Stage::Diagnosis, "no field output asks for it");
     decide(scene.output.vtu, Stage::Vtu, "not asked for");
+    decide(scene.output.csv, Stage::Csv, "not asked for");
     decide(scene.output.plot, Stage::Plot, "not asked for");
     let mut absent = |present: bool, what: &'static str, why: &'static str| {
         if !present {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::Error;
 use crate::build;
-use crate::scene::{ConditionSpec, ExprField, Scene};
+use crate::scene::{ConditionSpec, ExprField, RegionSpec, Scene};
 
 /// Something that a scene has and that costs something.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +24,8 @@ pub enum Effect {
     PrescribedInterface,
     /// There is a source.
     Source,
+    /// A velocity with a curl, in free space.
+    Vorticity,
     /// A prescribed normal derivative.
     Neumann,
     /// A prescribed flux.
@@ -66,6 +68,7 @@ impl Effect {
             Self::FluxJump => "flux jump",
             Self::PrescribedInterface => "prescribed interface",
             Self::Source => "source",
+            Self::Vorticity => "vorticity",
             Self::Neumann => "neumann boundary",
             Self::Flux => "flux boundary",
             Self::Robin => "robin boundary",
@@ -124,6 +127,8 @@ impl Survey {
         note(flux_jumps || prescribed, Effect::FluxJump);
         note(prescribed, Effect::PrescribedInterface);
         note(scene.regions.iter().any(|r| nonzero(r.source.as_ref())), Effect::Source);
+        let turns = |r: &RegionSpec| r.vorticity.iter().any(|c| nonzero(Some(c)));
+        note(scene.regions.iter().any(turns), Effect::Vorticity);
         let any = |test: fn(&ConditionSpec) -> bool| scene.boundaries.iter().any(|b| test(&b.condition));
         note(any(|c| matches!(c, ConditionSpec::Neumann(_))), Effect::Neumann);
         note(any(|c| matches!(c, ConditionSpec::Flux(_))), Effect::Flux);

@@ -80,11 +80,21 @@ fn stages(scene: &Scene, survey: &Survey) -> (Vec<Stage>, Vec<Skipped>) {
     }
     decide(true, Stage::Solve, "");
     decide(false, Stage::TimeSteps, "the scene is steady");
-    decide(exact || scene.output.vtu, Stage::Gradient, "neither exact solution nor field output asks for it");
+    let turns = survey.has(|e| matches!(e, Effect::Vorticity));
+    decide(turns, Stage::Velocity, "the scene has no vorticity");
+    let potential = exact || source || !turns;
+    let fields = exact || scene.output.vtu || scene.output.csv;
+    let why = if potential {
+        "neither exact solution nor field output asks for it"
+    } else {
+        "the scene has no source"
+    };
+    decide(potential && fields, Stage::Gradient, why);
     decide(exact, Stage::Errors, "the scene has no exact solution");
     decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
     decide(true, Stage::Estimate, "");
     decide(scene.output.vtu, Stage::Vtu, "not asked for");
+    decide(scene.output.csv, Stage::Csv, "not asked for");
     decide(scene.output.plot, Stage::Plot, "not asked for");
     skipped.push(Skipped { what: "interface", why: "the diffusivity is one constant" });
     skipped.push(Skipped { what: "boundary", why: "the domain is free space" });

@@ -19,7 +19,7 @@ use crate::scene::{MethodName, Scene};
 
 pub use accuracy::AccuracyPlan;
 pub use effects::Effect;
-pub use method::{FreeSpaceParams, MethodParams};
+pub use method::{FreeSpaceParams, MethodParams, Transforms};
 pub use predict::Predicted;
 
 /// What will be done, in order.
@@ -93,6 +93,8 @@ pub enum Stage {
     Solve,
     /// Step through time.
     TimeSteps,
+    /// The velocity at the nodes, in free space.
+    Velocity,
     /// The gradient at the nodes.
     Gradient,
     /// Errors against the exact solution.
@@ -107,6 +109,8 @@ pub enum Stage {
     Refinement,
     /// Write the fields for ParaView.
     Vtu,
+    /// Write the fields as comma-separated numbers.
+    Csv,
     /// Draw the solution.
     Plot,
 }
@@ -122,6 +126,7 @@ impl Stage {
                 | Self::Estimate
                 | Self::Diagnosis
                 | Self::Vtu
+                | Self::Csv
                 | Self::Plot
         )
     }

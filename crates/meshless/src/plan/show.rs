@@ -26,6 +26,7 @@ impl Stage {
             Self::FloatingConstants => "floating constants",
             Self::Solve => "solve",
             Self::TimeSteps => "time",
+            Self::Velocity => "velocity",
             Self::Gradient => "gradient",
             Self::Errors => "errors",
             Self::Probes => "probes",
@@ -33,12 +34,21 @@ impl Stage {
             Self::Diagnosis => "stencil diagnosis",
             Self::Refinement => "refinement",
             Self::Vtu => "vtu output",
+            Self::Csv => "csv output",
             Self::Plot => "plot",
         }
     }
 }
 
 impl Plan {
+    /// In free space, the fields that are transformed, and those that are transformed back; nothing else is.
+    pub fn transforms(&self) -> Option<[Vec<String>; 2]> {
+        match &self.method.params {
+            MethodParams::FreeSpace(params) => Some(params.transforms.names(self.dimension)),
+            _ => None,
+        }
+    }
+
     /// The linear solver in words.
     pub fn solver_name(&self) -> String {
         if matches!(self.method.params, MethodParams::FreeSpace(_)) {
@@ -79,6 +89,9 @@ impl fmt::Display for Plan {
             )?;
         }
         writeln!(f, "solver      {}", self.solver_name())?;
+        if let Some([forward, back]) = self.transforms() {
+            writeln!(f, "transforms  forward: {}; back: {}", forward.join(", "), back.join(", "))?;
+        }
         if let Some(accuracy) = &self.accuracy {
             let AccuracyPlan { tolerance, max_nodes } = accuracy;
             writeln!(f, "accuracy    relative error {tolerance:.1e}, at most {max_nodes:.0} nodes")?;

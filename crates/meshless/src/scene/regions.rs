@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::error::SceneError;
 use super::expression::ExprField;
+use super::free_space;
 use super::reader::{Table, Value};
 use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape};
 use super::spec::{InterfaceSpec, PointValues, RegionSpec};
@@ -23,12 +24,13 @@ pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
     let from_file = root.get("points").and_then(|v| v.table().ok()).is_some_and(|t| t.has("file"));
     let any_shape = tables.iter().any(|t| SHAPE_KEYS.into_iter().any(|key| t.has(key)));
     let labelled = from_file && last > 0 && !any_shape;
+    let open = free_space::is_open(root);
     let mut labels = HashSet::new();
     let mut regions = Vec::with_capacity(tables.len());
     let mut names = HashSet::new();
     for (index, table) in tables.into_iter().enumerate() {
         let shape = SHAPE_KEYS.into_iter().find_map(|key| table.get(key));
-        let spec = region(&table)?;
+        let spec = region(&table, open)?;
         if labelled {
             let label = spec.label.as_ref().unwrap_or(&spec.name);
             if !labels.insert(label.clone()) {
@@ -51,8 +53,8 @@ pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
     Ok(regions)
 }
 
-fn region(table: &Table<'_>) -> Result<RegionSpec, SceneError> {
-    table.allow(&keys_with_shape(&["name", "label", "diffusivity", "source", "exact"]))?;
+fn region(table: &Table<'_>, open: bool) -> Result<RegionSpec, SceneError> {
+    table.allow(&keys_with_shape(&["name", "label", "diffusivity", "source", "vorticity", "exact"]))?;
     Ok(RegionSpec {
         name: table.require("name")?.name()?,
         label: table.get("label").map(|value| label(&value)).transpose()?,
@@ -60,8 +62,30 @@ fn region(table: &Table<'_>) -> Result<RegionSpec, SceneError> {
         diffusivity: table.require("diffusivity")?.data_expression()?.check_positive()?,
         source: table.get("source").map(|value| value.data_expression()).transpose()?,
         exact: table.get("exact").map(|value| value.data_expression()).transpose()?,
+        vorticity: vorticity(table, open)?,
         place: table.place.clone(),
     })
+}
+
+/// An expression in the plane, one for each direction in space.
+fn vorticity(table: &Table<'_>, open: bool) -> Result<Vec<ExprField>, SceneError> {
+    let Some(value) = table.get("vorticity") else { return Ok(Vec::new()) };
+    if !open {
+        let help = "give the domain as `free_space`, or remove the key";
+        return Err(value.error("a vorticity is for free space", help));
+    }
+    match value.dimension {
+        1 => Err(value.error("there is no curl in one dimension", "remove the key")),
+        2 => Ok(vec![value.data_expression()?]),
+        _ => {
+            let components = value.items()?;
+            if components.len() != 3 {
+                let message = format!("expected 3 components, found {}", components.len());
+                return Err(value.error(message, "give an expression for each direction"));
+            }
+            components.iter().map(Value::data_expression).collect()
+        }
+    }
 }
 
 /// A number or a text.

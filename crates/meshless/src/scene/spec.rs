@@ -189,6 +189,8 @@ pub struct RegionSpec {
     pub source: Option<ExprField>,
     /// The exact solution, where it is known.
     pub exact: Option<ExprField>,
+    /// In free space, the curl of the velocity: one expression in 2-D, three in 3-D, none where it is zero.
+    pub vorticity: Vec<ExprField>,
     /// The table in the file.
     pub place: Place,
 }
@@ -353,4 +355,6 @@ pub struct OutputSpec {
     pub vtu: bool,
     /// A picture of the solution.
     pub plot: bool,
+    /// The fields as comma-separated numbers.
+    pub csv: bool,
 }

@@ -16,24 +16,29 @@ const SAMPLES: usize = 220;
 /// Bands of colour.
 const CONTOURS: usize = 14;
 
-pub(super) fn draw<const D: usize>(scene: &Scene, source: &Source<D>, u: &[f64]) -> Result<Picture, Error> {
+/// The picture of a field, which has a name.
+pub(super) fn draw<const D: usize>(
+    scene: &Scene,
+    source: &Source<D>,
+    (name, u): (&str, &Vec<f64>),
+) -> Result<Picture, Error> {
     let svg = if D == 1 {
         let profile = Profile {
             title: scene.title.clone(),
             x_label: "x".to_owned(),
-            u_label: "u".to_owned(),
+            u_label: name.to_owned(),
             regions: vec![(String::new(), source.points.iter().zip(u).map(|(p, u)| (p[0], *u)).collect())],
             exact: Vec::new(),
         };
         profile.to_svg(SIZE.0, SIZE.1)?
     } else {
-        plane(scene, source, u).to_svg(SIZE.0)?
+        plane(scene, source, name, u).to_svg(SIZE.0)?
     };
     Ok(Picture { svg })
 }
 
 /// The plane, or the middle one.
-fn plane<const D: usize>(scene: &Scene, source: &Source<D>, u: &[f64]) -> FieldPicture {
+fn plane<const D: usize>(scene: &Scene, source: &Source<D>, name: &str, u: &[f64]) -> FieldPicture {
     let (mesh, points) = (&source.mesh, source.mesh.points());
     let step = points[0].max(points[1]).div_ceil(SAMPLES);
     let samples = [points[0].div_ceil(step), points[1].div_ceil(step)];
@@ -43,10 +48,13 @@ fn plane<const D: usize>(scene: &Scene, source: &Source<D>, u: &[f64]) -> FieldP
     };
     let values = (0..samples[0] * samples[1]).map(|k| u[at(k % samples[0], k / samples[0])]).collect();
     let last = |a: usize| mesh.coordinate(a, (samples[a] - 1) * step);
-    let title = match D {
-        3 => format!("{} (z = {:.3})", scene.title, mesh.coordinate(2, middle(2))),
-        _ => scene.title.clone(),
-    };
+    let mut title = scene.title.clone();
+    if name != "u" {
+        title += &format!(": {name}");
+    }
+    if D == 3 {
+        title += &format!(" (z = {:.3})", mesh.coordinate(2, middle(2)));
+    }
     let min = [mesh.coordinate(0, 0), mesh.coordinate(1, 0)];
     let mut picture = FieldPicture::new(&title, min, [last(0), last(1)], samples[0], samples[1], values);
     picture.contours = CONTOURS;

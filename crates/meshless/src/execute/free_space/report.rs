@@ -1,10 +1,8 @@
 //! Figures about a solve in free space.
 
-use meshless_freespace::{Gaussian, Kernel, Radial, Spectral};
-use rayon::prelude::*;
+use meshless_freespace::Kernel;
 
 use super::{Chosen, Source};
-use crate::Error;
 use crate::execute::Exact;
 use crate::memory::peak_memory_mb;
 use crate::norms::ErrorNorms;
@@ -18,20 +16,30 @@ const EDGE: f64 = 1e-10;
 /// The least error that is claimed: the round-off of the transforms.
 const ROUND_OFF: f64 = 1e-15;
 
-/// Points whose contributions to a probe are added up together.
-const BLOCK: usize = 4096;
+/// What was solved for.
+pub(super) struct Solved<'a> {
+    pub(super) u: &'a [f64],
+    /// Magnitude of the velocity.
+    pub(super) speed: Option<&'a [f64]>,
+    pub(super) chosen: Chosen,
+    pub(super) errors: Option<Errors>,
+    pub(super) probes: Vec<Probe>,
+}
+
+fn extrema(values: &[f64]) -> Extrema {
+    let start = (f64::INFINITY, f64::NEG_INFINITY);
+    let (min, max) = values.iter().fold(start, |(l, h), &v| (l.min(v), h.max(v)));
+    Extrema { min, max }
+}
 
 pub(super) fn report<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     source: &Source<D>,
-    u: &[f64],
-    chosen: Chosen,
-    errors: Option<Errors>,
+    solved: Solved<'_>,
     seconds: Seconds,
-    probes: Vec<Probe>,
 ) -> Report {
-    let (min, max) = u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    let Solved { u, speed, chosen, errors, probes } = solved;
     let (order, name) = match chosen.kernel {
         Kernel::Gaussian { order, smoothing } => {
             (order, format!("fft, Gaussian kernel, sigma = {} h", smoothing.unwrap_or(2.0)))
@@ -39,7 +47,8 @@ pub(super) fn report<const D: usize>(
         Kernel::Spectral => (0, "fft, spectral kernel".to_owned()),
         Kernel::Truncated => (0, "fft, truncated kernel".to_owned()),
     };
-    let edge = source.mesh.edge_ratio(&source.values);
+    let all = source.vorticity.iter().chain(std::iter::once(&source.values));
+    let edge = all.map(|values| source.mesh.edge_ratio(values)).fold(0.0, f64::max);
     let estimate = if edge > EDGE {
         let why = format!(
             "the source has {edge:.1e} of its largest value at the edge of the box, and what it has beyond is left out"
@@ -60,7 +69,8 @@ pub(super) fn report<const D: usize>(
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),
         errors,
         estimate,
-        extrema: Extrema { min, max },
+        extrema: extrema(u),
+        speed: speed.map(extrema),
         solver: SolverReport { name, ..SolverReport::default() },
         seconds,
         peak_memory_mb: peak_memory_mb().unwrap_or(0.0),
@@ -103,40 +113,6 @@ pub(super) fn errors<const D: usize>(
     }
 }
 
-fn length<const D: usize>(x: &[f64; D]) -> f64 {
+pub(super) fn length<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|a| a * a).sum::<f64>().sqrt()
-}
-
-/// Values at the probes, by the sum over all points that defines the field: as accurate between the points of the mesh as at
-/// them, and outside of the box, too.
-pub(super) fn probes<const D: usize>(
-    scene: &Scene,
-    source: &Source<D>,
-    kernel: Kernel,
-) -> Result<Vec<Probe>, Error> {
-    let coarsest = source.mesh.spacing().into_iter().fold(0.0, f64::max);
-    let kernel: Box<dyn Radial> = match kernel {
-        Kernel::Gaussian { order, smoothing } => {
-            Box::new(Gaussian::<D>::new(order, smoothing.unwrap_or(2.0) * coarsest)?)
-        }
-        // Where the mesh resolves the source, the two are the same.
-        Kernel::Spectral | Kernel::Truncated => {
-            Box::new(Spectral::<D>::new(coarsest / std::f64::consts::PI)?)
-        }
-    };
-    let sum = |at: &[f64; D]| -> f64 {
-        let blocks = source.points.par_chunks(BLOCK).zip(source.values.par_chunks(BLOCK));
-        // Blocks of fixed size, added up in their order: the number of threads does not show.
-        let parts: Vec<f64> = blocks
-            .map(|(points, values)| {
-                let pairs = points.iter().zip(values).filter(|(_, f)| **f != 0.0);
-                pairs
-                    .map(|(p, f)| f * kernel.value(length::<D>(&std::array::from_fn(|a| p[a] - at[a]))))
-                    .sum()
-            })
-            .collect();
-        parts.iter().sum::<f64>() * source.mesh.cell_volume()
-    };
-    let probe = |at: &Vec<f64>| Probe { at: at.clone(), value: Some(sum(&std::array::from_fn(|a| at[a]))) };
-    Ok(scene.probes.iter().map(probe).collect())
 }

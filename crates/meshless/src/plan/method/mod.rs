@@ -6,7 +6,7 @@ mod gfdm;
 mod particle_difference;
 mod sharp;
 
-pub use free_space::FreeSpaceParams;
+pub use free_space::{FreeSpaceParams, Transforms};
 use meshless_interfaces::Method;
 use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams, ReactionParams, SurfaceReaction};
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
@@ -75,7 +75,7 @@ impl MethodParams {
             MethodName::ImmersedInterface => Self::ImmersedInterface(dcpse::immersed(scene)),
             MethodName::Sharp => Self::Sharp(sharp::params(scene)),
             MethodName::SurfaceReaction => Self::SurfaceReaction(dcpse::reaction(scene)),
-            MethodName::FreeSpace => Self::FreeSpace(free_space::params(scene)),
+            MethodName::FreeSpace => Self::FreeSpace(FreeSpaceParams::of(scene)),
             _ => Self::Gfdm(gfdm::params(name, scene, survey)),
         }
     }
