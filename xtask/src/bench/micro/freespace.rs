@@ -13,6 +13,7 @@ pub(in crate::bench) fn run() -> crate::bench::Outcome {
         "transforms alone, s",
         "solve, s",
         "ratio (≤ 1.25)",
+        "to transforms of several lines",
         "set-up, solves (≤ 1)",
         "doubles per point (≤ 5.5)",
         "2 threads, speed-up",
@@ -36,6 +37,7 @@ fn measure<const D: usize>(
     let phi = [Output::Potential { source: 0 }];
     let all: Vec<Output> = (0..D).map(|axis| Output::Gradient { source: 0, axis }).chain(phi).collect();
     let bare = busy(REPETITIONS, || plan.bare_transforms());
+    let packed = busy(REPETITIONS, || plan.bare_packed_transforms());
     let [one, first, second] = solves(&plan, &source, &phi)?;
     let [with_gradient, ..] = solves(&plan, &source, &all)?;
     table.row(
@@ -44,6 +46,7 @@ fn measure<const D: usize>(
             format!("{bare:.3}"),
             format!("{one:.3}"),
             format!("{:.2}", one / bare),
+            format!("{:.2}", one / packed),
             format!("{:.2}", set_up / one),
             format!("{:.2}", plan.bytes(1, 1) as f64 / (8 * mesh.len()) as f64),
             format!("{:.2}", first / second),

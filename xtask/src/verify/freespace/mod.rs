@@ -3,6 +3,7 @@
 mod checks;
 mod patch_checks;
 mod patches;
+mod patches_in_space;
 mod problems;
 mod runs;
 mod sections;
@@ -83,6 +84,14 @@ fn refined(options: &Options) -> Vec<Result<Run, String>> {
             for &n in bases(options.effort) {
                 progress(&format!("{SUITE} {} {} {n}", patches::CASE, layout.name));
                 runs.extend(PATCH_ORDERS.map(|order| patches::run(layout, order, n)));
+            }
+        }
+    }
+    if options.wants(patches::CASE, METHOD) && options.effort > Effort::Quick {
+        for layout in patches_in_space::LAYOUTS {
+            progress(&format!("{SUITE} {} {}", patches::CASE, layout.0));
+            for n in patches_in_space::BASES {
+                runs.extend(patches_in_space::ORDERS.map(|order| patches_in_space::run(layout, order, n)));
             }
         }
     }

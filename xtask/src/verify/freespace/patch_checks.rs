@@ -1,6 +1,7 @@
 //! What must hold with refinement patches.
 
 use super::patches::{CASE, COARSE, PAYING, SCALES, UNIFORM};
+use super::patches_in_space::{self, FINE, ONE, TWO};
 use super::runs::Run;
 use super::{PATCH_ORDERS, SCALES_ORDER, paper};
 use crate::verify::claims::Claims;
@@ -88,7 +89,29 @@ pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
         }
         figures(&error, claims);
     }
+    if options.effort > Effort::Quick {
+        in_space(&error, claims);
+    }
     scales(runs, options, claims);
+}
+
+/// The same in three dimensions.
+fn in_space(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Claims) {
+    let [before, finest] = patches_in_space::BASES;
+    for order in patches_in_space::ORDERS {
+        let rate = |name: &str| {
+            error(name, order, before)
+                .zip(error(name, order, finest))
+                .map(|(coarse, fine)| (coarse / fine).log2())
+        };
+        let difference = rate(ONE).zip(rate(FINE)).map(|(patch, one)| (patch - one).abs());
+        let claim = format!("{ONE}, m = {order}: order less that on one fine mesh");
+        claims.at_most(CASE, claim, difference, ORDER_MARGIN);
+        for (name, over, band) in [(ONE, FINE, [0.98, 1.02]), (TWO, ONE, [0.99, 1.01])] {
+            let ratio = error(name, order, finest).zip(error(over, order, finest)).map(|(a, b)| a / b);
+            claims.within(CASE, format!("m = {order}: error of {name} over that of {over}"), ratio, band);
+        }
+    }
 }
 
 /// Figures at N0 = 256.

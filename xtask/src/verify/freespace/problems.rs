@@ -55,6 +55,22 @@ pub(super) fn velocity(bumps: &[Field], p: [f64; 2]) -> [f64; 2] {
     })
 }
 
+/// The source whose potential is a bump of a radius in space.
+pub(super) fn ball_source(radius: f64) -> impl Fn([f64; 3]) -> f64 {
+    move |p| {
+        let [_, slope, second] = bump(p.iter().map(|x| x * x).sum::<f64>() / (radius * radius));
+        -(second + 2.0 * slope) / (radius * radius)
+    }
+}
+
+/// The gradient of that potential.
+pub(super) fn ball_gradient(radius: f64) -> impl Fn([f64; 3]) -> [f64; 3] {
+    move |p| {
+        let [_, slope, _] = bump(p.iter().map(|x| x * x).sum::<f64>() / (radius * radius));
+        p.map(|x| slope * x / (radius * radius))
+    }
+}
+
 /// Sources, what is asked for, and the fields that should come out.
 #[derive(Debug)]
 pub(super) struct Problem<const D: usize> {
