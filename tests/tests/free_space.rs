@@ -237,7 +237,10 @@ fn a_ring_blows_through_itself() {
     there.probes = vec![solution.field.points[at].to_vec()];
     let probe = solve(&there).probes.remove(0).velocity.expect("a velocity");
     let error = (0..3).fold(0.0_f64, |m, a| m.max((probe[a] - velocity[at][a]).abs()));
-    assert!(error < 1e-7 * solution.report.speed.expect("a speed").max, "{error:e}");
+    // What the mesh does not hold is at its highest wave numbers, where velocities are some tens of times larger relative to potentials.
+    let estimate = solution.report.estimate.l2.expect("an estimate");
+    let limit = 100.0 * estimate * solution.report.speed.expect("a speed").max;
+    assert!(error < limit, "{error:e} {limit:e} {estimate:e}");
 }
 
 #[test]
