@@ -1,7 +1,8 @@
 //! Which nodes are next to each other: pairs with no third node in between.
 
 use meshless_neighbors::NeighborLists;
-use rayon::prelude::*;
+
+use crate::parallel;
 
 /// A third node on the sphere over a pair counts as between them if it is inside by more than this times the squared
 /// distance of the pair, or on it up to as much outside: so a square of four nodes has no diagonals.
@@ -12,17 +13,11 @@ const TIE: f64 = 1e-9;
 /// The graph contains the Euclidean minimum spanning tree, so a region that is resolved by its nodes is connected
 /// in it; and its pairs share a face of their Voronoi cells, so regions that touch in it do touch.
 pub fn adjacent_pairs<const D: usize>(points: &[[f64; D]], lists: &NeighborLists) -> Vec<(u32, u32)> {
-    (0..points.len())
-        .into_par_iter()
-        .flat_map_iter(|i| {
-            let neighbors = lists.of(i);
-            neighbors
-                .iter()
-                .copied()
-                .filter(move |&j| j as usize > i && !separated(points, neighbors, i, j as usize))
-                .map(move |j| (i as u32, j))
-        })
-        .collect()
+    parallel::collect(points.len(), |i, pairs| {
+        let neighbors = lists.of(i);
+        let adjacent = |&&j: &&u32| j as usize > i && !separated(points, neighbors, i, j as usize);
+        pairs.extend(neighbors.iter().filter(adjacent).map(|&j| (i as u32, j)));
+    })
 }
 
 /// Whether a node other than i and j lies in the ball over the segment from i to j.

@@ -1,9 +1,9 @@
 //! What tells good nodes from bad ones, node by node, to be plotted.
 
 use meshless_stencils::{SignDiagnosis, Weight};
-use rayon::prelude::*;
 
 use crate::local::NodeFit;
+use crate::parallel;
 use crate::{Discretization, Problem, RowKind};
 
 /// Figures about one node, all without unit; zero where they have no meaning.
@@ -29,31 +29,29 @@ pub fn diagnose_nodes<const D: usize>(
 ) -> Vec<NodeDiagnosis> {
     let fit = NodeFit::<D>::new(degree, Weight::Exponential);
     let most = problem.supports.lists.max_count();
-    (0..problem.cloud.len())
-        .into_par_iter()
-        .map_init(
-            || (fit.scratch(most), Vec::new()),
-            |(scratch, row), i| {
-                let kind = discretization.kinds[i];
-                if kind == RowKind::Dirichlet {
-                    return NodeDiagnosis::default();
+    parallel::map_with(
+        problem.cloud.len(),
+        || (fit.scratch(most), Vec::new()),
+        |(scratch, row), i| {
+            let kind = discretization.kinds[i];
+            if kind == RowKind::Dirichlet {
+                return NodeDiagnosis::default();
+            }
+            row.clear();
+            row.extend(discretization.rows.row(i).1.iter().map(|a| -a));
+            let signs = SignDiagnosis::of_row(row.iter());
+            let (condition, residual) = match kind {
+                RowKind::Strong | RowKind::StrongBoundary => {
+                    fit.quality(problem, i, scratch).unwrap_or((f64::INFINITY, f64::INFINITY))
                 }
-                row.clear();
-                row.extend(discretization.rows.row(i).1.iter().map(|a| -a));
-                let signs = SignDiagnosis::of_row(row.iter());
-                let (condition, residual) = match kind {
-                    RowKind::Strong | RowKind::StrongBoundary => {
-                        fit.quality(problem, i, scratch).unwrap_or((f64::INFINITY, f64::INFINITY))
-                    }
-                    _ => (0.0, 0.0),
-                };
-                NodeDiagnosis {
-                    condition,
-                    residual,
-                    wrong_sign: signs.wrong_sign,
-                    dominance_error: signs.dominance_error,
-                }
-            },
-        )
-        .collect()
+                _ => (0.0, 0.0),
+            };
+            NodeDiagnosis {
+                condition,
+                residual,
+                wrong_sign: signs.wrong_sign,
+                dominance_error: signs.dominance_error,
+            }
+        },
+    )
 }

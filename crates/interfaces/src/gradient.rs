@@ -1,9 +1,9 @@
 //! Gradients of a nodal field, every node in its own region.
 
 use meshless_stencils::{Functional, Weight};
-use rayon::prelude::*;
 
 use crate::local::{NodeFit, NodeScratch, enlarged_support};
+use crate::parallel;
 use crate::{MethodError, Problem};
 
 /// Degree of the fit where enough nodes of the region are near.
@@ -23,35 +23,33 @@ pub(crate) fn recover<const D: usize>(
 ) -> Result<Vec<[f64; D]>, MethodError> {
     let fits = [NodeFit::new(DEGREE, Weight::Exponential), NodeFit::new(1, Weight::Exponential)];
     let most = problem.supports.lists.max_count();
-    (0..u.len())
-        .into_par_iter()
-        .map_init(
-            || (fits.each_ref().map(|f| f.scratch(most)), Vec::with_capacity(most), vec![0.0; most]),
-            |(scratch, own, coefficients), i| {
-                own.clear();
-                own.extend(own_region(problem, i, problem.supports.lists.of(i)));
+    parallel::try_map_with(
+        u.len(),
+        || (fits.each_ref().map(|f| f.scratch(most)), Vec::with_capacity(most), vec![0.0; most]),
+        |(scratch, own, coefficients), i| {
+            own.clear();
+            own.extend(own_region(problem, i, problem.supports.lists.of(i)));
+            if let Some(gradient) =
+                fit_gradient(problem, &fits[0], DEGREE, i, own, &mut scratch[0], coefficients, u)
+            {
+                return Ok(gradient);
+            }
+            let wide: Vec<u32> = own_region(problem, i, &enlarged_support(problem, i)).collect();
+            if wide.is_empty() {
+                return Ok([0.0; D]);
+            }
+            for (fit, degree) in fits.iter().zip([DEGREE, 1]) {
+                let mut scratch = fit.scratch(wide.len());
+                let mut coefficients = vec![0.0; wide.len()];
                 if let Some(gradient) =
-                    fit_gradient(problem, &fits[0], DEGREE, i, own, &mut scratch[0], coefficients, u)
+                    fit_gradient(problem, fit, degree, i, &wide, &mut scratch, &mut coefficients, u)
                 {
                     return Ok(gradient);
                 }
-                let wide: Vec<u32> = own_region(problem, i, &enlarged_support(problem, i)).collect();
-                if wide.is_empty() {
-                    return Ok([0.0; D]);
-                }
-                for (fit, degree) in fits.iter().zip([DEGREE, 1]) {
-                    let mut scratch = fit.scratch(wide.len());
-                    let mut coefficients = vec![0.0; wide.len()];
-                    if let Some(gradient) =
-                        fit_gradient(problem, fit, degree, i, &wide, &mut scratch, &mut coefficients, u)
-                    {
-                        return Ok(gradient);
-                    }
-                }
-                Ok(along_the_nearest(problem, i, &wide, u))
-            },
-        )
-        .collect()
+            }
+            Ok(along_the_nearest(problem, i, &wide, u))
+        },
+    )
 }
 
 fn own_region<'a, const D: usize>(

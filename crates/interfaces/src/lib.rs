@@ -53,6 +53,8 @@ mod gradient;
 mod instances;
 mod local;
 mod method;
+mod operator_rows;
+mod parallel;
 pub mod particle_difference;
 pub mod phase_field;
 mod problem;

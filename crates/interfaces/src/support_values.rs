@@ -1,7 +1,10 @@
 //! Numbers that belong to the entries of a neighbour list, computed in parallel into one array.
 
+use std::ops::Range;
+
 use meshless_neighbors::NeighborLists;
-use rayon::prelude::*;
+
+use crate::parallel;
 
 /// Nodes that one task computes; fixed, so that nothing depends on the number of threads.
 const NODES_PER_TASK: usize = 128;
@@ -15,10 +18,10 @@ pub(crate) struct SupportValues {
 
 impl SupportValues {
     /// Calls `fill(scratch, i, out)` for every node, where `out` has one place for each neighbour of i.
-    pub(crate) fn compute<S, E: Send>(
+    pub(crate) fn compute<S: Send, E: Send>(
         lists: &NeighborLists,
-        scratch: impl Fn() -> S + Sync + Send,
-        fill: impl Fn(&mut S, usize, &mut [f64]) -> Result<(), E> + Sync + Send,
+        scratch: impl Fn() -> S + Sync,
+        fill: impl Fn(&mut S, usize, &mut [f64]) -> Result<(), E> + Sync,
     ) -> Result<Self, E> {
         let mut offsets = Vec::with_capacity(lists.len() + 1);
         offsets.push(0);
@@ -34,14 +37,18 @@ impl SupportValues {
             tasks.push((first..last, head));
             rest = tail;
         }
-        tasks.into_par_iter().try_for_each_init(scratch, |scratch, (nodes, mut block)| {
-            for i in nodes {
-                let (row, tail) = block.split_at_mut(lists.of(i).len());
-                fill(scratch, i, row)?;
-                block = tail;
-            }
-            Ok(())
-        })?;
+        parallel::for_each_with(
+            tasks,
+            &scratch,
+            &|scratch, (nodes, mut block): (Range<usize>, &mut [f64])| {
+                for i in nodes {
+                    let (row, tail) = block.split_at_mut(lists.of(i).len());
+                    fill(scratch, i, row)?;
+                    block = tail;
+                }
+                Ok(())
+            },
+        )?;
         Ok(Self { offsets, values })
     }
 

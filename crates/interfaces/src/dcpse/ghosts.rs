@@ -1,14 +1,14 @@
 //! Which ghosts there are, and where to find them.
 
 use meshless_stencils::StencilError;
-use rayon::prelude::*;
 
 use super::constrained::{ConstrainedGhosts, Ghost, GhostScratch};
 use super::foot::{Foot, foot};
 use super::image::ImageGhosts;
-use super::operators::Operators;
 use super::params::{Ghosts, ImmersedParams};
 use crate::method::RowKind;
+use crate::operator_rows::OperatorRows;
+use crate::parallel;
 use crate::{MethodError, Problem};
 
 /// Degree of the fits on the boundary where ghosts are made by image points.
@@ -59,7 +59,7 @@ impl GhostTable {
         problem: &Problem<'_, D>,
         params: &ImmersedParams,
         kinds: &[RowKind],
-        operators: &Operators,
+        operators: &OperatorRows,
     ) -> Result<Self, MethodError> {
         let (keys, rows) = keys(problem, kinds, operators);
         let degree = match params.ghosts {
@@ -76,14 +76,9 @@ impl GhostTable {
             Some(images) => images,
             None => &fits,
         };
-        let ghosts: Vec<Result<Ghost, MethodError>> = keys
-            .par_iter()
-            .map_init(GhostScratch::default, |scratch, &(q, own)| {
-                across(problem, maker, q as usize, own, scratch)
-            })
-            .collect();
-        // Which node an error names must not depend on which thread was faster.
-        let ghosts = ghosts.into_iter().collect::<Result<_, _>>()?;
+        let ghosts = parallel::try_map_with(keys.len(), GhostScratch::default, |scratch, k| {
+            across(problem, maker, keys[k].0 as usize, keys[k].1, scratch)
+        })?;
         let boundary = on_boundary(problem, &fits, kinds)?;
         Ok(Self { keys, ghosts, boundary, rows })
     }
@@ -113,7 +108,7 @@ impl GhostTable {
 fn keys<const D: usize>(
     problem: &Problem<'_, D>,
     kinds: &[RowKind],
-    operators: &Operators,
+    operators: &OperatorRows,
 ) -> (Vec<(u32, u16)>, Vec<u32>) {
     let labels = problem.labels;
     let (mut keys, mut rows) = (Vec::new(), Vec::new());
@@ -155,14 +150,11 @@ pub(super) fn on_boundary<const D: usize>(
     kinds: &[RowKind],
 ) -> Result<Vec<(u32, Ghost)>, MethodError> {
     let nodes = problem.cloud.boundary();
-    let found: Vec<Result<(u32, Ghost), MethodError>> = (0..nodes.len())
-        .into_par_iter()
-        .filter(|&index| kinds[nodes[index].node as usize] == RowKind::StrongBoundary)
-        .map_init(GhostScratch::default, |scratch, index| {
-            Ok((nodes[index].node, boundary_value(problem, maker, index, scratch)?))
-        })
-        .collect();
-    found.into_iter().collect()
+    let collocated = |&index: &usize| kinds[nodes[index].node as usize] == RowKind::StrongBoundary;
+    let places: Vec<usize> = (0..nodes.len()).filter(collocated).collect();
+    parallel::try_map_with(places.len(), GhostScratch::default, |scratch, k| {
+        Ok((nodes[places[k]].node, boundary_value(problem, maker, places[k], scratch)?))
+    })
 }
 
 fn boundary_value<const D: usize>(

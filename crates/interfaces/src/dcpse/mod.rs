@@ -20,10 +20,10 @@ use std::time::Instant;
 use meshless_sparse::{DifferenceMatrix, RowBuilder};
 
 use crate::method::{Counts, Discretization, Method, RowKind};
+use crate::operator_rows::OperatorRows;
 use crate::{MethodError, Problem};
 use constrained::Ghost;
 use ghosts::GhostTable;
-use operators::Operators;
 pub use params::{Ghosts, ImmersedParams, Interpolation};
 pub use reaction::{Indicators, ReactionParams, ReactionSource, Share, Sigma, Smoothing, SurfaceReaction};
 
@@ -45,7 +45,7 @@ impl<const D: usize> Method<D> for ImmersedInterface {
         let sees = |i: usize, j: usize| ghosts::sees(problem, i, j);
         let degree = params::operator_degree(self.params.order);
         let operators =
-            Operators::compute(problem, degree, |i| operators::diffusion(problem, i), collocated, sees)?;
+            operators::compute(problem, degree, |i| operators::diffusion(problem, i), collocated, sees)?;
         let table = GhostTable::build(problem, &self.params, &kinds, &operators)?;
         let stencil_seconds = start.elapsed().as_secs_f64();
         let counts = Counts {
@@ -86,7 +86,7 @@ struct Rows<'a, const D: usize> {
     problem: &'a Problem<'a, D>,
     kinds: &'a [RowKind],
     known: &'a [Option<f64>],
-    operators: &'a Operators,
+    operators: &'a OperatorRows,
     table: &'a GhostTable,
 }
 

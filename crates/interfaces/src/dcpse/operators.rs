@@ -1,75 +1,31 @@
 //! DC-PSE operators at all nodes: of `div(eta grad u)` with the diffusivity of the node's own region, or any others.
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-
 use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit};
 
 use super::foot;
-use crate::local::enlarged_support;
-use crate::support_values::SupportValues;
+use crate::operator_rows::OperatorRows;
 use crate::{MethodError, Problem};
 
 /// Width of the kernel relative to the radius of the support.
 const KERNEL_WIDTH: f64 = 0.5;
 
-/// Coefficients of the differences `u_j - u_i`, at every node that is asked for.
-pub(super) struct Operators {
-    values: SupportValues,
-    enlarged: BTreeMap<u32, (Vec<u32>, Vec<f64>)>,
-}
-
-impl Operators {
-    /// Operators `functional(i)` of a degree at the nodes for which `wanted` holds. A coefficient is zero where
-    /// `sees(i, j)` does not hold: such a neighbour takes no part.
-    pub(super) fn compute<const D: usize>(
-        problem: &Problem<'_, D>,
-        degree: usize,
-        functional: impl Fn(usize) -> Functional<D> + Sync,
-        wanted: impl Fn(usize) -> bool + Sync,
-        sees: impl Fn(usize, usize) -> bool + Sync,
-    ) -> Result<Self, MethodError> {
-        let fit = LocalFit::<D>::new(FitParams { degree, through_centre: true, ..FitParams::default() });
-        let operator = Operator { problem, fit, functional, sees };
-        let enlarged = Mutex::new(BTreeMap::new());
-        let values = SupportValues::compute(
-            problem.supports.lists,
-            || operator.scratch(),
-            |scratch, i, out| {
-                if !wanted(i) || operator.row(i, problem.supports.lists.of(i), scratch, out).is_ok() {
-                    return Ok(());
-                }
-                out.fill(0.0);
-                let neighbors = enlarged_support(problem, i);
-                let mut row = vec![0.0; neighbors.len()];
-                operator.row(i, &neighbors, scratch, &mut row)?;
-                enlarged
-                    .lock()
-                    .unwrap_or_else(std::sync::PoisonError::into_inner)
-                    .insert(i as u32, (neighbors, row));
-                Ok::<(), MethodError>(())
-            },
-        )?;
-        let enlarged = enlarged.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        Ok(Self { values, enlarged })
-    }
-
-    /// Neighbours and coefficients of node i.
-    pub(super) fn row<'a, const D: usize>(
-        &'a self,
-        problem: &Problem<'a, D>,
-        i: usize,
-    ) -> (&'a [u32], &'a [f64]) {
-        match self.enlarged.get(&(i as u32)) {
-            Some((neighbors, row)) => (neighbors, row),
-            None => (problem.supports.lists.of(i), self.values.of(i)),
-        }
-    }
-
-    /// Operators that needed a larger support.
-    pub(super) fn enlarged(&self) -> usize {
-        self.enlarged.len()
-    }
+/// Operators `functional(i)` of a degree at the nodes for which `wanted` holds. A coefficient is zero where `sees(i, j)`
+/// does not hold: such a neighbour takes no part.
+pub(super) fn compute<const D: usize>(
+    problem: &Problem<'_, D>,
+    degree: usize,
+    functional: impl Fn(usize) -> Functional<D> + Sync,
+    wanted: impl Fn(usize) -> bool + Sync,
+    sees: impl Fn(usize, usize) -> bool + Sync,
+) -> Result<OperatorRows, MethodError> {
+    let fit = LocalFit::<D>::new(FitParams { degree, through_centre: true, ..FitParams::default() });
+    let operator = Operator { problem, fit, functional, sees };
+    OperatorRows::compute(
+        problem,
+        wanted,
+        || operator.scratch(),
+        |i, neighbors, scratch, out| operator.row(i, neighbors, scratch, out),
+    )
 }
 
 /// `div(eta grad u)` at a node, with the diffusivity of its own region.

@@ -1,9 +1,8 @@
 //! The diffusivity as the strong form sees it: scaled and smoothed (Kraus et al. 2022, section 2.2.1).
 
-use rayon::prelude::*;
-
 use crate::Problem;
 use crate::gfdm::StrongParams;
+use crate::parallel;
 
 /// Exponent of the smoothing weights `exp(-3 r^2 / h_i^2)`.
 const SMOOTHING_DECAY: f64 = 3.0;
@@ -66,20 +65,17 @@ impl StrongDiffusivity {
 /// One smoothing cycle: a convex combination over the support.
 fn smooth<const D: usize>(problem: &Problem<'_, D>, values: &[f64]) -> Vec<f64> {
     let points = problem.cloud.points();
-    (0..points.len())
-        .into_par_iter()
-        .map(|i| {
-            let (mut sum, mut weights) = (values[i], 1.0);
-            let scale = SMOOTHING_DECAY / problem.supports.radius[i].powi(2);
-            for &j in problem.supports.lists.of(i) {
-                let j = j as usize;
-                let weight = (-scale * squared_distance(&points[i], &points[j])).exp();
-                sum += weight * values[j];
-                weights += weight;
-            }
-            sum / weights
-        })
-        .collect()
+    parallel::map(points.len(), |i| {
+        let (mut sum, mut weights) = (values[i], 1.0);
+        let scale = SMOOTHING_DECAY / problem.supports.radius[i].powi(2);
+        for &j in problem.supports.lists.of(i) {
+            let j = j as usize;
+            let weight = (-scale * squared_distance(&points[i], &points[j])).exp();
+            sum += weight * values[j];
+            weights += weight;
+        }
+        sum / weights
+    })
 }
 
 fn squared_distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {

@@ -13,14 +13,14 @@ mod strong;
 use std::time::Instant;
 
 use meshless_sparse::DifferenceMatrix;
-use rayon::prelude::*;
 
 use crate::method::{Counts, Discretization, Method, RowKind};
+use crate::operator_rows::OperatorRows;
+use crate::parallel;
 use crate::{MethodError, Problem};
 use boundary::BoundaryRow;
 use conservative::{CellBalance, CellRow};
 pub use params::{GfdmParams, Selection, StrongParams};
-use strong::StrongRows;
 pub(crate) use strong::add_correction;
 
 /// A generalised finite difference method.
@@ -56,7 +56,7 @@ impl Gfdm {
 struct Parts {
     kinds: Vec<RowKind>,
     known: Vec<Option<f64>>,
-    strong: Option<StrongRows>,
+    strong: Option<OperatorRows>,
     boundary: Vec<Option<BoundaryRow>>,
     cells: Vec<Option<CellRow>>,
     counts: Counts,
@@ -74,7 +74,7 @@ impl Parts {
             None
         } else {
             let wanted: Vec<bool> = kinds.iter().map(|&k| k == RowKind::Strong).collect();
-            let rows = StrongRows::compute(problem, &params.strong, &wanted)?;
+            let rows = strong::compute(problem, &params.strong, &wanted)?;
             counts.stencils += wanted.iter().filter(|&&w| w).count();
             counts.enlarged = rows.enlarged();
             counts.flagged = select::conservative_nodes(problem, params, &rows, &mut kinds);
@@ -174,13 +174,14 @@ fn boundary_rows<const D: usize>(
     kinds: &mut [RowKind],
 ) -> Result<Vec<Option<BoundaryRow>>, MethodError> {
     let nodes = problem.cloud.boundary();
-    let mut rows: Vec<Option<BoundaryRow>> = (0..nodes.len())
-        .into_par_iter()
-        .map(|index| match kinds[nodes[index].node as usize] {
+    let mut rows = parallel::try_map_with(
+        nodes.len(),
+        || (),
+        |(), index| match kinds[nodes[index].node as usize] {
             RowKind::StrongBoundary => boundary::collocate(problem, index).map(Some),
             _ => Ok(None),
-        })
-        .collect::<Result<_, _>>()?;
+        },
+    )?;
     for (node, row) in nodes.iter().zip(&mut rows) {
         let i = node.node as usize;
         if row.take_if(|row| !row.is_sound() || select::crosses_a_jump(problem, i, &row.neighbors)).is_some()
@@ -200,14 +201,12 @@ fn cell_rows<const D: usize>(
         return Ok(vec![None; kinds.len()]);
     }
     let balance = CellBalance::new(problem)?;
-    (0..kinds.len())
-        .into_par_iter()
-        .map_init(
-            || balance.scratch(),
-            |scratch, i| match kinds[i] {
-                RowKind::Conservative => balance.row(i, scratch).map(Some),
-                _ => Ok(None),
-            },
-        )
-        .collect()
+    parallel::try_map_with(
+        kinds.len(),
+        || balance.scratch(),
+        |scratch, i| match kinds[i] {
+            RowKind::Conservative => balance.row(i, scratch).map(Some),
+            _ => Ok(None),
+        },
+    )
 }

@@ -1,12 +1,12 @@
 //! Which rows are conservative (Kraus et al. 2022, section 2.2.3 and appendix A).
 
 use meshless_stencils::SignDiagnosis;
-use rayon::prelude::*;
 
 use crate::Problem;
-use crate::gfdm::strong::StrongRows;
 use crate::gfdm::{GfdmParams, Selection};
 use crate::method::RowKind;
+use crate::operator_rows::OperatorRows;
+use crate::parallel;
 
 /// Dirichlet rows, rows of flux conditions, and strong rows at all other nodes.
 pub(super) fn boundary_kinds<const D: usize>(
@@ -30,31 +30,24 @@ pub(super) fn boundary_kinds<const D: usize>(
 pub(super) fn conservative_nodes<const D: usize>(
     problem: &Problem<'_, D>,
     params: &GfdmParams,
-    rows: &StrongRows,
+    rows: &OperatorRows,
     kinds: &mut [RowKind],
 ) -> usize {
     if params.selection == Selection::None {
         return 0;
     }
     let by_region = |i: usize| params.select_by_region && crosses_a_region(problem, i);
-    let flagged: Vec<bool> = (0..kinds.len())
-        .into_par_iter()
-        .map(|i| {
-            let dominated =
-                || SignDiagnosis::of_row(rows.row(problem, i).1).dominance_error > params.selection_tolerance;
-            kinds[i] == RowKind::Strong && (dominated() || by_region(i))
-        })
-        .collect();
+    let flagged = parallel::map(kinds.len(), |i| {
+        let dominated =
+            || SignDiagnosis::of_row(rows.row(problem, i).1).dominance_error > params.selection_tolerance;
+        kinds[i] == RowKind::Strong && (dominated() || by_region(i))
+    });
     let neighbors_too = params.selection == Selection::FlaggedAndNeighbors;
-    let chosen: Vec<bool> = (0..kinds.len())
-        .into_par_iter()
-        .map(|i| {
-            let near_flagged = || problem.supports.lists.of(i).iter().any(|&j| flagged[j as usize]);
-            let at_a_jump =
-                || kinds[i] == RowKind::Strong && crosses_a_jump(problem, i, rows.row(problem, i).0);
-            flagged[i] || (neighbors_too && near_flagged()) || at_a_jump()
-        })
-        .collect();
+    let chosen = parallel::map(kinds.len(), |i| {
+        let near_flagged = || problem.supports.lists.of(i).iter().any(|&j| flagged[j as usize]);
+        let at_a_jump = || kinds[i] == RowKind::Strong && crosses_a_jump(problem, i, rows.row(problem, i).0);
+        flagged[i] || (neighbors_too && near_flagged()) || at_a_jump()
+    });
     for (kind, chosen) in kinds.iter_mut().zip(chosen) {
         if chosen && *kind == RowKind::Strong {
             *kind = RowKind::Conservative;

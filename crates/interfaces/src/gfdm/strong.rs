@@ -1,73 +1,26 @@
 //! The strong-form operator: collocation of the equation by least-squares stencils (Kraus et al. 2022, section 2.2.1).
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-
 use meshless_stencils::{Functional, Weight};
 
 use crate::gfdm::StrongParams;
 use crate::gfdm::diffusivity::StrongDiffusivity;
-use crate::local::{NodeFit, NodeScratch, enlarged_support};
-use crate::support_values::SupportValues;
+use crate::local::{NodeFit, NodeScratch};
+use crate::operator_rows::OperatorRows;
 use crate::{MethodError, Problem};
 
-/// Coefficients `gamma_ij` of `div(eta grad u)` at every node of a set, and `gamma_ii = -sum gamma_ij`.
-pub(super) struct StrongRows {
-    values: SupportValues,
-    enlarged: BTreeMap<u32, (Vec<u32>, Vec<f64>)>,
-}
-
-impl StrongRows {
-    /// Computes the rows of the nodes for which `wanted` holds; the others stay zero.
-    pub(super) fn compute<const D: usize>(
-        problem: &Problem<'_, D>,
-        params: &StrongParams,
-        wanted: &[bool],
-    ) -> Result<Self, MethodError> {
-        let operator = StrongOperator::new(problem, params);
-        let most = problem.supports.lists.max_count();
-        let enlarged = Mutex::new(BTreeMap::new());
-        let values = SupportValues::compute(
-            problem.supports.lists,
-            || operator.scratch(most),
-            |scratch, i, out| {
-                if !wanted[i] {
-                    return Ok(());
-                }
-                let neighbors = problem.supports.lists.of(i);
-                if operator.row(i, neighbors, scratch, out).is_ok() {
-                    return Ok(());
-                }
-                let (neighbors, row) = operator.enlarged_row(i)?;
-                enlarged
-                    .lock()
-                    .unwrap_or_else(std::sync::PoisonError::into_inner)
-                    .insert(i as u32, (neighbors, row));
-                Ok::<(), MethodError>(())
-            },
-        )?;
-        Ok(Self {
-            values,
-            enlarged: enlarged.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner),
-        })
-    }
-
-    /// Neighbours and coefficients of node i.
-    pub(super) fn row<'a, const D: usize>(
-        &'a self,
-        problem: &Problem<'a, D>,
-        i: usize,
-    ) -> (&'a [u32], &'a [f64]) {
-        match self.enlarged.get(&(i as u32)) {
-            Some((neighbors, row)) => (neighbors, row),
-            None => (problem.supports.lists.of(i), self.values.of(i)),
-        }
-    }
-
-    /// Stencils that needed a larger support.
-    pub(super) fn enlarged(&self) -> usize {
-        self.enlarged.len()
-    }
+/// Coefficients `gamma_ij` of `div(eta grad u)` at the nodes for which `wanted` holds; `gamma_ii = -sum gamma_ij`.
+pub(super) fn compute<const D: usize>(
+    problem: &Problem<'_, D>,
+    params: &StrongParams,
+    wanted: &[bool],
+) -> Result<OperatorRows, MethodError> {
+    let operator = StrongOperator::new(problem, params);
+    OperatorRows::compute(
+        problem,
+        |i| wanted[i],
+        || operator.scratch(problem.supports.lists.max_count()),
+        |i, neighbors, scratch, out| operator.row(i, neighbors, scratch, out),
+    )
 }
 
 struct StrongOperator<'a, const D: usize> {
@@ -99,13 +52,6 @@ impl<'a, const D: usize> StrongOperator<'a, D> {
             partials: std::array::from_fn(|_| vec![0.0; max_neighbors]),
             correction: vec![0.0; max_neighbors],
         }
-    }
-
-    fn enlarged_row(&self, i: usize) -> Result<(Vec<u32>, Vec<f64>), MethodError> {
-        let neighbors = enlarged_support(self.problem, i);
-        let mut row = vec![0.0; neighbors.len()];
-        self.row(i, &neighbors, &mut self.scratch(neighbors.len()), &mut row)?;
-        Ok((neighbors, row))
     }
 
     fn row(

@@ -1,9 +1,9 @@
 //! Where the interfaces are, as the nodes near them see it.
 
 use meshless_geometry::Projection;
-use rayon::prelude::*;
 
 use crate::Problem;
+use crate::parallel;
 
 /// How far a foot is looked for, in units of the interaction radius: an interface that passes between a node and its
 /// neighbour is nearer than the neighbour, which may be as far as the larger of both radii.
@@ -28,7 +28,7 @@ pub(super) struct Feet<const D: usize> {
 impl<const D: usize> Feet<D> {
     /// Projects the nodes near interfaces at which something jumps.
     pub(super) fn new(problem: &Problem<'_, D>) -> Self {
-        let feet = (0..problem.cloud.len()).into_par_iter().map(|i| feet_of(problem, i)).collect();
+        let feet = parallel::map(problem.cloud.len(), |i| feet_of(problem, i));
         Self { feet }
     }
 

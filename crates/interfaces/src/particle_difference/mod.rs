@@ -20,9 +20,9 @@ use std::time::Instant;
 
 use meshless_sparse::DifferenceMatrix;
 use meshless_stencils::Functional;
-use rayon::prelude::*;
 
 use crate::method::{Counts, Discretization, Method, RowKind};
+use crate::parallel;
 use crate::support_values::SupportValues;
 use crate::{MethodError, Problem};
 pub use extended::ParticleDifferenceExtended;
@@ -53,20 +53,18 @@ impl<const D: usize> Method<D> for ParticleDifference {
         let feet = Feet::new(problem);
         let maker = StencilMaker::new(problem, &feet, self.params);
         let partials: [Functional<D>; D] = std::array::from_fn(Functional::Partial);
-        (0..u.len())
-            .into_par_iter()
-            .map_init(
-                || maker.scratch(),
-                |scratch, i| {
-                    let stencils = maker.stencil(i, &partials, false, scratch)?;
-                    Ok(stencils.map(|s| {
-                        let differences =
-                            s.neighbors.iter().zip(&s.coefficients).map(|(&j, c)| c * (u[j as usize] - u[i]));
-                        differences.sum::<f64>() + s.constant * u[i] - s.shift
-                    }))
-                },
-            )
-            .collect()
+        parallel::try_map_with(
+            u.len(),
+            || maker.scratch(),
+            |scratch, i| {
+                let stencils = maker.stencil(i, &partials, false, scratch)?;
+                Ok(stencils.map(|s| {
+                    let differences =
+                        s.neighbors.iter().zip(&s.coefficients).map(|(&j, c)| c * (u[j as usize] - u[i]));
+                    differences.sum::<f64>() + s.constant * u[i] - s.shift
+                }))
+            },
+        )
     }
 }
 
@@ -93,17 +91,16 @@ fn build<const D: usize>(
     )?;
     let mut boundary_index = vec![0; known.len()];
     problem.cloud.boundary().iter().enumerate().for_each(|(k, b)| boundary_index[b.node as usize] = k);
-    let rows = (0..known.len())
-        .into_par_iter()
-        .filter(|&i| known[i].is_none() && (!is_plain(i) || failed[i].load(Ordering::Relaxed)))
-        .map_init(
-            || maker.scratch(),
-            |scratch, i| match problem.cloud.is_boundary(i) {
-                true => maker.boundary(boundary_index[i], scratch),
-                false => maker.interior(i, scratch),
-            },
-        )
-        .collect::<Result<Vec<_>, _>>()?;
+    let special = |&i: &usize| known[i].is_none() && (!is_plain(i) || failed[i].load(Ordering::Relaxed));
+    let nodes: Vec<usize> = (0..known.len()).filter(special).collect();
+    let rows = parallel::try_map_with(
+        nodes.len(),
+        || maker.scratch(),
+        |scratch, k| match problem.cloud.is_boundary(nodes[k]) {
+            true => maker.boundary(boundary_index[nodes[k]], scratch),
+            false => maker.interior(nodes[k], scratch),
+        },
+    )?;
     Ok((plain, rows))
 }
 

@@ -3,10 +3,10 @@
 use meshless_geometry::Cloud;
 use meshless_neighbors::NeighborLists;
 use meshless_stencils::{FitParams, Functional, LocalFit};
-use rayon::prelude::*;
 
 use super::surface::Expansion;
 use crate::MethodError;
+use crate::parallel;
 
 /// Degree for which the operators are exact: second order for second derivatives.
 const DEGREE: usize = 3;
@@ -87,9 +87,12 @@ impl<'a, const D: usize> Derivatives<'a, D> {
                 over(scratch, i, &wide).map(|values| Rows { enlarged: Some(wide), values })
             }
         };
-        let rows: Vec<Result<Rows, MethodError>> =
-            band.par_iter().map_init(|| fit.scratch(most), |scratch, &i| row(scratch, i as usize)).collect();
-        Ok(Self { lists, band, rows: rows.into_iter().collect::<Result<_, _>>()? })
+        let rows = parallel::try_map_with(
+            band.len(),
+            || fit.scratch(most),
+            |scratch, k| row(scratch, band[k] as usize),
+        )?;
+        Ok(Self { lists, band, rows })
     }
 
     /// Nodes near interfaces.

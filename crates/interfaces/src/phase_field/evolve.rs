@@ -1,10 +1,10 @@
 //! The field of one region through time, and when to stop.
 
 use meshless_geometry::Cloud;
-use rayon::prelude::*;
 
 use super::derivatives::Derivatives;
 use super::{PhaseFieldInfo, PhaseFieldParams, PhaseFieldStop};
+use crate::parallel;
 
 /// Share of the largest stable step that is taken.
 const STEP: f64 = 0.5;
@@ -100,7 +100,7 @@ impl<const D: usize> Run<'_, D> {
 
     /// Means over the neighbours and the node itself, weighted by `exp(-r^2 / h^2)`.
     fn average(&self, psi: &[f64]) -> Vec<f64> {
-        self.on_band(psi, |(place, &i)| self.mean(place, i as usize, psi))
+        self.on_band(psi, |place, i| self.mean(place, i, psi))
     }
 
     fn mean(&self, place: usize, i: usize, psi: &[f64]) -> f64 {
@@ -114,9 +114,9 @@ impl<const D: usize> Run<'_, D> {
     }
 
     /// A new field: values at the nodes of the band, the same elsewhere.
-    fn on_band(&self, psi: &[f64], value: impl Fn((usize, &u32)) -> f64 + Sync + Send) -> Vec<f64> {
+    fn on_band(&self, psi: &[f64], value: impl Fn(usize, usize) -> f64 + Sync) -> Vec<f64> {
         let band = self.derivatives.band();
-        let values: Vec<f64> = band.par_iter().enumerate().map(value).collect();
+        let values = parallel::map(band.len(), |place| value(place, band[place] as usize));
         let mut next = psi.to_vec();
         band.iter().zip(values).for_each(|(&i, value)| next[i as usize] = value);
         next
@@ -124,8 +124,7 @@ impl<const D: usize> Run<'_, D> {
 
     fn step(&self, psi: &[f64], time_step: f64) -> Vec<f64> {
         let squared = self.width * self.width;
-        let change = |(place, &i): (usize, &u32)| {
-            let i = i as usize;
+        let change = |place: usize, i: usize| {
             // One-sided second derivatives are no use for explicit steps: there the field follows its neighbours.
             if self.cloud.is_boundary(i) {
                 return self.mean(place, i, psi);

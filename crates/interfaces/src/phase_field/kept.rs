@@ -3,9 +3,8 @@
 use meshless_geometry::{Cloud, RegionMap};
 use meshless_neighbors::NeighborLists;
 
-use rayon::prelude::*;
-
 use crate::MethodError;
+use crate::parallel;
 
 /// A node without a node of another region within so many spacings is no matter of rounding: the diagonal of a square of
 /// the lattice, and a little more.
@@ -62,8 +61,7 @@ pub(super) fn check_interfaces<const D: usize>(
     band: &[u32],
     map: &RegionMap<D>,
 ) -> Result<(), MethodError> {
-    let misses = |&i: &u32| {
-        let i = i as usize;
+    let misses = |i: usize| {
         let x = &cloud.points()[i];
         let farthest = lists
             .of(i)
@@ -82,8 +80,8 @@ pub(super) fn check_interfaces<const D: usize>(
             })
             .map(|&own| (own, i))
     };
-    let missed: Vec<(u16, usize)> = band.par_iter().filter_map(misses).collect();
-    missed.first().map_or(Ok(()), |&(region, node)| Err(lost(cloud, region, node)))
+    let missed = parallel::map(band.len(), |k| misses(band[k] as usize));
+    missed.into_iter().flatten().next().map_or(Ok(()), |(region, node)| Err(lost(cloud, region, node)))
 }
 
 fn lost<const D: usize>(cloud: &Cloud<D>, region: u16, node: usize) -> MethodError {

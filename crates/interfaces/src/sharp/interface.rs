@@ -1,9 +1,9 @@
 //! Points on the interfaces, with everything that the conditions and the equation need there.
 
 use meshless_neighbors::CellList;
-use rayon::prelude::*;
 
 use super::unknowns::Unknowns;
+use crate::parallel;
 use crate::{Field, InterfaceJump, MethodError, Problem};
 
 /// Least distance between two points of an interface, in spacings of the cloud. Candidates lie densely, so that gaps are
@@ -82,20 +82,16 @@ impl<const D: usize> InterfacePoints<D> {
         nodes: &CellList<'_, D>,
     ) -> Result<Self, MethodError> {
         let tolerance = ON_BOUNDARY * problem.domain.bounds().diameter();
-        let candidates: Vec<Candidate<D>> = (0..problem.cloud.len())
-            .into_par_iter()
-            .flat_map_iter(|i| candidates_of(problem, i, tolerance))
-            .collect();
+        let candidates: Vec<Candidate<D>> =
+            parallel::collect(problem.cloud.len(), |i, all| all.extend(candidates_of(problem, i, tolerance)));
         let kept = thin(&candidates)?;
-        let found: Vec<(InterfacePoint<D>, [f64; D])> = kept
-            .into_par_iter()
-            .map_init(Vec::new, |found, k| {
-                let candidate = &candidates[k];
-                Ok(point(problem, unknowns, nodes, candidate, found)?.map(|point| (point, candidate.at)))
-            })
-            .filter_map(Result::transpose)
-            .collect::<Result<_, MethodError>>()?;
-        let (points, places) = found.into_iter().unzip();
+        let found = parallel::try_map_with(kept.len(), Vec::new, |found, k| {
+            let candidate = &candidates[kept[k]];
+            Ok::<_, MethodError>(
+                point(problem, unknowns, nodes, candidate, found)?.map(|point| (point, candidate.at)),
+            )
+        })?;
+        let (points, places) = found.into_iter().flatten().unzip();
         Ok(Self { places, points })
     }
 }

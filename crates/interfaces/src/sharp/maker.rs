@@ -1,7 +1,6 @@
 //! Everything that the fits of all nodes share, and the rows that they make.
 
 use meshless_neighbors::CellList;
-use rayon::prelude::*;
 
 use super::adapted::Adapted;
 use super::basis::Basis;
@@ -13,6 +12,7 @@ use super::rate::{RateFit, Rates};
 use super::stencil::Stencil;
 use super::thickness;
 use super::unknowns::Unknowns;
+use crate::parallel;
 use crate::{Condition, Material, MethodError, Problem};
 
 /// What is left of the reproduction of a value before a larger stencil is tried.
@@ -266,5 +266,5 @@ fn slopes<const D: usize>(problem: &Problem<'_, D>) -> Option<Vec<[f64; D]>> {
         let step = GRADIENT_STEP * problem.cloud.spacing()[i];
         field.gradient(&problem.cloud.points()[i], step).map(|g| g / problem.eta[i])
     };
-    Some((0..problem.cloud.len()).into_par_iter().map(slope).collect())
+    Some(parallel::map(problem.cloud.len(), slope))
 }

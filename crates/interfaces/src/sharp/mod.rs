@@ -26,9 +26,9 @@ use std::time::Instant;
 
 use meshless_neighbors::CellList;
 use meshless_sparse::DifferenceMatrix;
-use rayon::prelude::*;
 
 use crate::method::{Counts, Discretization, Method, RowKind, SplitRows};
+use crate::parallel;
 use crate::{MethodError, Problem, Sample, SystemSolution};
 use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
@@ -87,13 +87,10 @@ impl<const D: usize> Method<D> for Sharp {
         let known = problem.dirichlet();
         thin::check(problem)?;
         self.with_maker(problem, |maker| {
-            let rows = (0..known.len())
-                .into_par_iter()
-                .filter(|&i| known[i].is_none())
-                .map_init(Scratch::default, |scratch, i| maker.row(i, scratch))
-                .collect::<Vec<Result<Row, MethodError>>>();
-            // Which node an error names must not depend on which thread was faster.
-            let rows = rows.into_iter().collect::<Result<Vec<Row>, MethodError>>()?;
+            let nodes: Vec<usize> = (0..known.len()).filter(|&i| known[i].is_none()).collect();
+            let rows = parallel::try_map_with(nodes.len(), Scratch::default, |scratch, k| {
+                maker.row(nodes[k], scratch)
+            })?;
             assemble(problem, maker.unknowns, &known, &rows, start.elapsed().as_secs_f64())
         })
     }
@@ -132,9 +129,7 @@ fn at_all_nodes<T: Send, const D: usize>(
     nodes: usize,
     work: impl Fn(usize, &mut Scratch<D>) -> Result<T, MethodError> + Sync,
 ) -> Result<Vec<T>, MethodError> {
-    let outcomes: Vec<Result<T, MethodError>> =
-        (0..nodes).into_par_iter().map_init(Scratch::default, |scratch, i| work(i, scratch)).collect();
-    outcomes.into_iter().collect()
+    parallel::try_map_with(nodes, Scratch::default, |scratch, i| work(i, scratch))
 }
 
 fn assemble<const D: usize>(

@@ -1,8 +1,7 @@
 //! Values and gradients of a solution from the fits that made the rows.
 
-use rayon::prelude::*;
-
 use super::maker::{Maker, Scratch};
+use crate::parallel;
 use crate::{MethodError, Sample, SystemSolution};
 
 /// A solution in the unknowns of the fits.
@@ -102,25 +101,21 @@ impl<const D: usize> Maker<'_, D> {
     /// Values and gradients at points: a fit round each of a few, and the fits of the nodes nearest to many, so that a
     /// picture takes no longer than the rows did.
     pub(super) fn samples(&self, points: &[[f64; D]], values: &Values<'_>) -> Vec<Option<Sample<D>>> {
-        let owners: Vec<Option<Owner>> = points.par_iter().map(|x| self.owner(x)).collect();
+        let owners = parallel::map(points.len(), |k| self.owner(&points[k]));
         // The polynomials of rates are at hand for a functional only.
         if points.len() <= self.problem.cloud.len() || !values.rates.is_empty() {
-            let sample = |scratch: &mut Scratch<D>, (x, owner): (&[f64; D], &Option<Owner>)| {
-                self.sample(x, (*owner)?, values, scratch)
-            };
-            return points.par_iter().zip(&owners).map_init(Scratch::default, sample).collect();
+            return parallel::map_with(points.len(), Scratch::default, |scratch, k| {
+                self.sample(&points[k], owners[k]?, values, scratch)
+            });
         }
         let node = |k: &usize| owners[*k].map(|owner| owner.node);
         let mut order: Vec<usize> = (0..points.len()).filter(|k| owners[*k].is_some()).collect();
         order.sort_by_key(node);
         let groups: Vec<&[usize]> = order.chunk_by(|a, b| node(a) == node(b)).collect();
-        let found: Vec<Vec<Option<Sample<D>>>> = groups
-            .par_iter()
-            .map_init(Scratch::default, |scratch, group| {
-                let members = group.iter().filter_map(|&k| Some((points[k], owners[k]?)));
-                self.sample_group(&members.collect::<Vec<_>>(), values, scratch)
-            })
-            .collect();
+        let found = parallel::map_with(groups.len(), Scratch::default, |scratch, g| {
+            let members = groups[g].iter().filter_map(|&k| Some((points[k], owners[k]?)));
+            self.sample_group(&members.collect::<Vec<_>>(), values, scratch)
+        });
         let mut samples = vec![None; points.len()];
         order.iter().zip(found.into_iter().flatten()).for_each(|(&k, sample)| samples[k] = sample);
         samples

@@ -2,10 +2,10 @@
 
 use meshless_neighbors::CellList;
 use meshless_stencils::{DcPse, Functional};
-use rayon::prelude::*;
 
-use super::super::operators::Operators;
+use super::super::operators;
 use super::params::Smoothing;
+use crate::parallel;
 use crate::{MethodError, Problem};
 
 /// The Green's function is cut off at so many widths: what is lost is 3e-4 of its mass in one dimension.
@@ -61,7 +61,7 @@ fn beyond<const D: usize>(problem: &Problem<'_, D>) -> Vec<Option<(u16, f64)>> {
             others.into_iter().filter(|&o| o != own).filter_map(distance).max_by(|a, b| a.1.total_cmp(&b.1));
         nearest.filter(|(_, share)| *share > 0.0)
     };
-    (0..problem.cloud.len()).into_par_iter().map(share).collect()
+    parallel::map(problem.cloud.len(), share)
 }
 
 /// `sum_q chi_q G(x - x_q) / sum_q G(x - x_q)`: the sum over the regions is one.
@@ -108,7 +108,7 @@ fn convolve<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<
         sums.sort_by_key(|s| s.0);
         sums
     };
-    Ok((0..points.len()).into_par_iter().map_init(Vec::new, |found, i| at(found, i)).collect())
+    Ok(parallel::map_with(points.len(), Vec::new, at))
 }
 
 /// Explicit steps of `du/dt = lap u` up to the time `w^2 / 2`; the normal derivative vanishes on the boundary.
@@ -116,7 +116,7 @@ fn diffuse<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<V
     let n = problem.cloud.len();
     let interior = |i: usize| !problem.cloud.is_boundary(i);
     // Degree 2: steps of first order in space, of which every one is nearly an average.
-    let laplacian = Operators::compute(problem, 2, |_| Functional::Laplacian, interior, |_, _| true)?;
+    let laplacian = operators::compute(problem, 2, |_| Functional::Laplacian, interior, |_, _| true)?;
     let spacing = problem.cloud.spacing();
     // In units of the spacing of each node, so that the width follows it.
     let rate =
@@ -135,15 +135,11 @@ fn diffuse<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<V
         };
         let mut u: Vec<f64> = problem.labels.iter().zip(&beyond).map(start).collect();
         for _ in 0..steps as usize {
-            let mut next: Vec<f64> = (0..n)
-                .into_par_iter()
-                .map(|i| {
-                    let (neighbors, row) = laplacian.row(problem, i);
-                    let change: f64 =
-                        neighbors.iter().zip(row).map(|(&j, c)| c * (u[j as usize] - u[i])).sum();
-                    u[i] + step * spacing[i] * spacing[i] * change
-                })
-                .collect();
+            let mut next = parallel::map(n, |i| {
+                let (neighbors, row) = laplacian.row(problem, i);
+                let change: f64 = neighbors.iter().zip(row).map(|(&j, c)| c * (u[j as usize] - u[i])).sum();
+                u[i] + step * spacing[i] * spacing[i] * change
+            });
             for node in problem.cloud.boundary() {
                 let b = node.node as usize;
                 next[b] = mirrored(problem, b, &next);
@@ -155,42 +151,38 @@ fn diffuse<const D: usize>(problem: &Problem<'_, D>, width: f64) -> Result<Vec<V
     let partial = |axis: usize| DcPse::<D>::derivative(std::array::from_fn(|k| u8::from(k == axis)), 2);
     let operators: [DcPse<D>; D] = std::array::from_fn(partial);
     let most = problem.supports.lists.max_count();
-    (0..n)
-        .into_par_iter()
-        .map_init(
-            || (operators.each_ref().map(|o| o.scratch(most)), Vec::new(), Vec::new()),
-            |(scratch, offsets, row), i| {
-                let mixed = fields.iter().filter(|u| u[i].abs() > 1e-12).count() > 1;
-                if !mixed {
-                    return Ok(Vec::new());
+    parallel::try_map_with(
+        n,
+        || (operators.each_ref().map(|o| o.scratch(most)), Vec::new(), Vec::new()),
+        |(scratch, offsets, row), i| {
+            let mixed = fields.iter().filter(|u| u[i].abs() > 1e-12).count() > 1;
+            if !mixed {
+                return Ok(Vec::new());
+            }
+            let points = problem.cloud.points();
+            let neighbors = problem.supports.lists.of(i);
+            offsets.clear();
+            offsets.extend(
+                neighbors
+                    .iter()
+                    .map(|&j| -> [f64; D] { std::array::from_fn(|k| points[j as usize][k] - points[i][k]) }),
+            );
+            row.resize(neighbors.len() + 1, 0.0);
+            let mut shares: Vec<Share<D>> =
+                (0..regions).map(|r| (r as u16, fields[r][i], [0.0; D])).collect();
+            for (axis, (operator, scratch)) in operators.iter().zip(scratch).enumerate() {
+                operator
+                    .stencil(offsets, 0.5 * problem.supports.radius[i], scratch, row)
+                    .map_err(|source| MethodError::stencil(i, &points[i], source))?;
+                for (r, share) in shares.iter_mut().enumerate() {
+                    let values = neighbors.iter().map(|&j| fields[r][j as usize]);
+                    share.2[axis] =
+                        row[0] * fields[r][i] + row[1..].iter().zip(values).map(|(c, u)| c * u).sum::<f64>();
                 }
-                let points = problem.cloud.points();
-                let neighbors = problem.supports.lists.of(i);
-                offsets.clear();
-                offsets.extend(
-                    neighbors.iter().map(|&j| -> [f64; D] {
-                        std::array::from_fn(|k| points[j as usize][k] - points[i][k])
-                    }),
-                );
-                row.resize(neighbors.len() + 1, 0.0);
-                let mut shares: Vec<Share<D>> =
-                    (0..regions).map(|r| (r as u16, fields[r][i], [0.0; D])).collect();
-                for (axis, (operator, scratch)) in operators.iter().zip(scratch).enumerate() {
-                    operator
-                        .stencil(offsets, 0.5 * problem.supports.radius[i], scratch, row)
-                        .map_err(|source| MethodError::stencil(i, &points[i], source))?;
-                    for (r, share) in shares.iter_mut().enumerate() {
-                        let values = neighbors.iter().map(|&j| fields[r][j as usize]);
-                        share.2[axis] = row[0] * fields[r][i]
-                            + row[1..].iter().zip(values).map(|(c, u)| c * u).sum::<f64>();
-                    }
-                }
-                Ok(shares)
-            },
-        )
-        .collect::<Vec<_>>()
-        .into_iter()
-        .collect()
+            }
+            Ok(shares)
+        },
+    )
 }
 
 /// The mean of the inner neighbours, near ones first: no flux goes through the boundary.

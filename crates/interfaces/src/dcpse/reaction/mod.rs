@@ -15,12 +15,13 @@ use std::time::Instant;
 
 use meshless_sparse::{DifferenceMatrix, RowBuilder};
 use meshless_stencils::Functional;
-use rayon::prelude::*;
 
 use super::constrained::{ConstrainedGhosts, Ghost};
-use super::operators::Operators;
+use super::operators;
 use super::{ghosts, kinds, params as immersed};
 use crate::method::{Counts, Discretization, Method, RowKind};
+use crate::operator_rows::OperatorRows;
+use crate::parallel;
 use crate::{MethodError, Problem};
 pub use indicator::{Indicators, Share};
 pub use params::{ReactionParams, ReactionSource, Sigma, Smoothing};
@@ -52,7 +53,7 @@ impl<const D: usize> Method<D> for SurfaceReaction {
         let known = problem.dirichlet();
         let kinds = kinds(problem, &known);
         let degree = immersed::operator_degree(self.params.order);
-        let laplacian = Operators::compute(
+        let laplacian = operators::compute(
             problem,
             degree,
             |_| Functional::Laplacian,
@@ -60,9 +61,8 @@ impl<const D: usize> Method<D> for SurfaceReaction {
             |_, _| true,
         )?;
         let indicators = Indicators::new(problem, self.params.smoothing, self.params.width)?;
-        let nodes = || (0..kinds.len()).into_par_iter();
-        let sigma: Vec<f64> = nodes().map(|i| self.diffusivity(problem, &indicators, i)).collect();
-        let slopes: Vec<[f64; D]> = nodes().map(|i| resistance_slope(problem, &indicators, i)).collect();
+        let sigma = parallel::map(kinds.len(), |i| self.diffusivity(problem, &indicators, i));
+        let slopes = parallel::map(kinds.len(), |i| resistance_slope(problem, &indicators, i));
         let boundary = ghosts::on_boundary(
             problem,
             &ConstrainedGhosts::new(problem, BOUNDARY_DEGREE, self.params.unsteady)?,
@@ -86,7 +86,7 @@ impl<const D: usize> Method<D> for SurfaceReaction {
             ..Counts::default()
         };
         let matrix = rows.matrix()?;
-        let rhs = (0..kinds.len()).into_par_iter().map(|i| rows.rhs(i)).collect();
+        let rhs = parallel::map(kinds.len(), |i| rows.rhs(i));
         let volumes = problem.cloud.spacing().iter().map(|h| h.powi(D as i32)).collect();
         Ok(Discretization {
             rows: matrix,
@@ -156,7 +156,7 @@ struct Rows<'a, const D: usize> {
     params: &'a ReactionParams,
     kinds: &'a [RowKind],
     known: &'a [Option<f64>],
-    laplacian: &'a Operators,
+    laplacian: &'a OperatorRows,
     indicators: &'a Indicators<D>,
     sigma: &'a [f64],
     /// Gradients of `1 / sigma`.

@@ -12,11 +12,11 @@ mod rows;
 use std::time::Instant;
 
 use meshless_sparse::DifferenceMatrix;
-use rayon::prelude::*;
 
 use super::feet::Feet;
 use super::{ParticleDifference, ParticleDifferenceParams, Wedge};
 use crate::method::{Counts, Discretization, Method, RowKind};
+use crate::parallel;
 use crate::{MethodError, Problem, SystemSolution};
 use points::InterfacePoints;
 use rows::{ExtendedRow, RowMaker};
@@ -38,20 +38,19 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
         let maker = RowMaker::new(problem, &feet, &points, self.params);
         let known = problem.dirichlet();
         let nodes = known.len();
-        let of_nodes = (0..nodes)
-            .into_par_iter()
-            .map_init(
-                || maker.scratch(),
-                |scratch, i| match known[i] {
-                    Some(value) => Ok(ExtendedRow { row_sum: 1.0, rhs: value, ..ExtendedRow::default() }),
-                    None => maker.node(i, scratch),
-                },
-            )
-            .collect::<Result<Vec<_>, MethodError>>()?;
-        let of_points = (0..points.list.len())
-            .into_par_iter()
-            .map_init(|| maker.scratch(), |scratch, k| maker.point(k, scratch))
-            .collect::<Result<Vec<_>, MethodError>>()?;
+        let of_nodes = parallel::try_map_with(
+            nodes,
+            || maker.scratch(),
+            |scratch, i| match known[i] {
+                Some(value) => Ok(ExtendedRow { row_sum: 1.0, rhs: value, ..ExtendedRow::default() }),
+                None => maker.node(i, scratch),
+            },
+        )?;
+        let of_points = parallel::try_map_with(
+            points.list.len(),
+            || maker.scratch(),
+            |scratch, k| maker.point(k, scratch),
+        )?;
         let stencil_seconds = start.elapsed().as_secs_f64();
         let constrained = |i: usize| !of_nodes[i].jumps.is_empty();
         let kinds: Vec<RowKind> = (0..nodes)
@@ -109,13 +108,10 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
         let feet = Feet::new(problem);
         let points = InterfacePoints::new(problem, &feet);
         let maker = RowMaker::new(problem, &feet, &points, self.params);
-        let gradients = (0..problem.cloud.len())
-            .into_par_iter()
-            .map_init(
-                || maker.scratch(),
-                |scratch, i| maker.gradient(i, &solution.u, &solution.extra, scratch),
-            )
-            .collect::<Vec<Result<_, MethodError>>>();
-        gradients.into_iter().collect()
+        parallel::try_map_with(
+            problem.cloud.len(),
+            || maker.scratch(),
+            |scratch, i| maker.gradient(i, &solution.u, &solution.extra, scratch),
+        )
     }
 }
