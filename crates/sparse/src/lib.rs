@@ -5,6 +5,8 @@
 //!   would round away; elimination of prescribed values; signs and sums ([`MatrixReport`]).
 //! - [`solve`] and [`Prepared`]: sparse LU or `L L^T` with refinement, BiCGStab(l), GMRES, IDR(s), conjugate gradients, all stopped by
 //!   the true residual; [`Preconditioner`]s.
+//! - [`Multigrid`]: algebraic multigrid by smoothed aggregation or after Ruge and Stüben, as a preconditioner; for matrices that
+//!   are not symmetric, and coefficients that jump by ten orders of magnitude.
 //! - [`clusters`], [`Split`], [`Bordered`]: the constants of stiff regions that nothing prescribed holds, as unknowns of
 //!   their own; [`pure_neumann`] for problems that nothing holds at all.
 //!
