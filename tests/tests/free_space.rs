@@ -6,7 +6,7 @@ use meshless::scene::Scene;
 use meshless::{Error, Silent, execute};
 
 const CHARGE: &str = include_str!("../../examples/charge.toml");
-const RING: &str = include_str!("../../examples/vortex-ring.toml");
+const RING: &str = include_str!("../../examples/vortex_ring.toml");
 
 fn solve(scene: &Scene) -> Report {
     let plan = Plan::new(scene).expect("a plan");
