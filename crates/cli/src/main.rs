@@ -14,6 +14,7 @@ mod methods;
 mod plan;
 mod progress;
 mod solve;
+mod summary;
 
 use std::process::ExitCode;
 

@@ -1,0 +1,139 @@
+//! A report in lines of text, as `meshless solve` prints it.
+
+use meshless::report::{Probe, Report};
+
+pub(crate) fn print(report: &Report) {
+    say!("{}", report.title);
+    system(report);
+    field(report);
+    solution(report);
+    errors(report);
+    seconds(report);
+    report.probes.iter().for_each(|p| probe(p, has_u(report)));
+}
+
+/// What was set up, and what had to be done otherwise than planned.
+fn system(report: &Report) {
+    say!(
+        "method      {} (order {}), {} unknowns, spacing {:.4}",
+        report.method,
+        report.order,
+        report.unknowns,
+        report.spacing
+    );
+    if let Some(why) = &report.fallback {
+        say!("fallback    {why}");
+    }
+    if let Some(layer) = &report.thin_layer {
+        say!(
+            "thin layer  \"{}\" is {:.2e} thin near {:?}: less accurate there; a spacing of {:.2e} resolves it",
+            layer.region,
+            layer.thickness,
+            layer.at,
+            layer.resolving_spacing
+        );
+    }
+    let nodes = &report.nodes;
+    say!(
+        "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",
+        nodes.strong,
+        nodes.conservative,
+        nodes.strong_boundary,
+        nodes.dirichlet
+    );
+    say!("contrast    {:.3e}", report.contrast);
+}
+
+/// A scene with a vorticity alone has a velocity, and no u.
+fn has_u(report: &Report) -> bool {
+    report.speed.is_none() || report.extrema.min != 0.0 || report.extrema.max != 0.0
+}
+
+fn field(report: &Report) {
+    if has_u(report) {
+        say!("u           {:.6e} .. {:.6e}", report.extrema.min, report.extrema.max);
+    }
+    if let Some(speed) = &report.speed {
+        say!("speed       {:.6e} .. {:.6e}", speed.min, speed.max);
+    }
+}
+
+fn solution(report: &Report) {
+    let solver = &report.solver;
+    say!("solver      {}, {} iterations, residual {:.1e}", solver.name, solver.iterations, solver.residual);
+    if let Some(time) = &report.time {
+        say!(
+            "time        {} in {} steps ({} rejected), {} matrices",
+            time.end,
+            time.steps,
+            time.rejected,
+            time.matrices
+        );
+    }
+}
+
+/// True errors, the estimate, and the clouds that a tolerance has taken.
+fn errors(report: &Report) {
+    if let Some(errors) = &report.errors {
+        say!(
+            "error       l2 {:.3e}, linf {:.3e}, gradient linf {:.3e}",
+            errors.l2,
+            errors.linf,
+            errors.gradient_linf
+        );
+        if errors.regions.len() > 1 {
+            for (name, region) in &errors.regions {
+                say!("  {name:<10} l2 {:.3e}, linf {:.3e}", region.l2, region.linf);
+            }
+        }
+    }
+    match (report.estimate.l2, &report.estimate.why_not) {
+        (Some(l2), _) => say!("estimate    l2 {l2:.3e}"),
+        (None, Some(why)) => say!("estimate    none: {why}"),
+        (None, None) => {}
+    }
+    for rung in report.accuracy.iter().flat_map(|accuracy| &accuracy.rungs) {
+        match (&rung.why, rung.estimate) {
+            (None, Some(estimate)) => say!(
+                "  spacing {:.3e}: {} unknowns, estimate {estimate:.1e}, {:.3} s",
+                rung.spacing,
+                rung.unknowns,
+                rung.seconds
+            ),
+            (why, _) => {
+                say!("  spacing {:.3e}: {}", rung.spacing, why.as_deref().unwrap_or("no estimate"));
+            }
+        }
+    }
+}
+
+fn seconds(report: &Report) {
+    let s = &report.seconds;
+    say!(
+        "seconds     {:.3}: points {:.3}, neighbors {:.3}, stencils {:.3}, assembly {:.3}, solve {:.3}, post {:.3}, estimate {:.3}",
+        s.total,
+        s.points,
+        s.neighbors,
+        s.stencils,
+        s.assembly,
+        s.solve,
+        s.post,
+        s.estimate
+    );
+}
+
+fn probe(probe: &Probe, has_u: bool) {
+    let Some(value) = probe.value else {
+        say!("probe       {:?}: outside of the domain", probe.at);
+        return;
+    };
+    let mut parts = Vec::new();
+    if has_u {
+        parts.push(format!("{value:.8e}"));
+    }
+    if let Some(velocity) = &probe.velocity {
+        let components: Vec<String> = velocity.iter().map(|v| format!("{v:.8e}")).collect();
+        parts.push(format!("velocity [{}]", components.join(", ")));
+    }
+    say!("probe       {:?}: {}", probe.at, parts.join(", "));
+}
