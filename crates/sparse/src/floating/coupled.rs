@@ -5,20 +5,17 @@
 //! others, the unknown is `s w`, because prolongation takes constants for smooth: at moderate contrasts aggregates cross
 //! interfaces, where `w` jumps and `s w` does not.
 
+use super::all_rows::{AllRows, METHOD};
 use super::bordered::Bordered;
 use super::dense::DenseLu;
-use super::joined::{Equations, take_extra};
 use crate::multigrid::Multigrid;
 use crate::precond::Preconditioner;
-use crate::solver::{AUTO_RESTART, Levels, LinearOperator, Method, PATIENCE, Residuals, iterate};
-use crate::solver::{SolveError, SolveInfo, SolverParams};
+use crate::solver::{Levels, PATIENCE, SolveError, SolveInfo, SolverParams, iterate};
 use crate::vector::axpy;
 
 /// Residual to which the responses are solved for. They only precondition: with 1e-2 the coupled iteration takes as many
 /// steps as with exact ones (`docs/multigrid.md`).
 const RESPONSE: f64 = 1e-2;
-
-const METHOD: Method = Method::Gmres { restart: AUTO_RESTART };
 
 /// What is computed once for all right-hand sides.
 #[derive(Debug)]
@@ -68,56 +65,22 @@ impl Coupled {
         rhs: &[f64],
         params: &SolverParams,
     ) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
-        let operator = Operator { system, levels, corner: &self.corner };
+        let product = |x: &[f64], y: &mut [f64]| self.multiply(system, levels, x, y);
         let preconditioner = Arrow { system, factors: levels.factors, multigrid: levels.multigrid, of: self };
-        let b: Vec<f64> = rhs.iter().zip(levels.factors).map(|(b, f)| b * f).collect();
-        let patient = SolverParams { max_iterations: params.max_iterations.min(PATIENCE), ..*params };
-        let (mut x, info) = iterate(METHOD, &operator, &preconditioner, &b, &patient)?;
-        let extra = take_extra(system, &mut x);
-        system.unscale(&mut x);
-        Ok((x, extra, info))
-    }
-}
-
-/// The coupled matrix, its rows scaled.
-struct Operator<'a> {
-    system: &'a Bordered,
-    levels: &'a Levels<'a>,
-    corner: &'a [Vec<f64>],
-}
-
-impl LinearOperator for Operator<'_> {
-    fn dim(&self) -> usize {
-        self.system.n()
+        AllRows { system, levels, product: &product }.solve(&preconditioner, rhs, params)
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        self.levels.matrix.mul_vec(x, y);
-        let pinned = self.system.pinned();
+    /// `y = A x` for the coupled matrix, its rows scaled.
+    fn multiply(&self, system: &Bordered, levels: &Levels<'_>, x: &[f64], y: &mut [f64]) {
+        levels.matrix.mul_vec(x, y);
+        let pinned = system.pinned();
         for (l, &p) in pinned.iter().enumerate() {
-            let (columns, values) = self.system.matrix().row(p as usize);
+            let (columns, values) = system.matrix().row(p as usize);
             let nodes = columns.iter().zip(values).filter(|(j, _)| !pinned.contains(j));
-            let sum: f64 =
-                nodes.map(|(&j, a)| a * self.system.inverse_scale(j as usize) * x[j as usize]).sum();
+            let sum: f64 = nodes.map(|(&j, a)| a * system.inverse_scale(j as usize) * x[j as usize]).sum();
             let border: f64 = pinned.iter().zip(&self.corner[l]).map(|(&q, d)| d * x[q as usize]).sum();
-            y[p as usize] = self.levels.factors[p as usize] * (sum + border);
+            y[p as usize] = levels.factors[p as usize] * (sum + border);
         }
-    }
-}
-
-impl Operator<'_> {
-    fn equations(&self) -> Equations<'_> {
-        Equations { system: self.system, factors: self.levels.factors, scaled: true }
-    }
-}
-
-impl Residuals for Operator<'_> {
-    fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
-        self.equations().residual(x, b, r);
-    }
-
-    fn backward_error(&self, x: &[f64], b: &[f64]) -> f64 {
-        self.equations().backward_error(x, b)
     }
 }
 

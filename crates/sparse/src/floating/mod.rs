@@ -1,5 +1,6 @@
 //! Constants of floating stiff regions as unknowns of their own.
 
+mod all_rows;
 mod bordered;
 mod clusters;
 mod coupled;

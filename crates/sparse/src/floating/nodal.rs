@@ -6,20 +6,18 @@
 //! rounded: products and residuals are formed in `s w` and constants. What is rounded is the answer of the preconditioner, by
 //! `1e-16 / s` of it; GMRES is flexible for that reason.
 
+use super::all_rows::AllRows;
 use super::bordered::Bordered;
-use super::joined::{Equations, take_extra};
+use super::joined::take_extra;
 use super::split::Split;
 use crate::csr::Csr;
 use crate::error::MatrixError;
 use crate::multigrid::Multigrid;
 use crate::precond::Preconditioner;
-use crate::solver::{AUTO_RESTART, Levels, LinearOperator, Method, PATIENCE, Residuals, iterate};
-use crate::solver::{SolveError, SolveInfo, SolverParams};
+use crate::solver::{Levels, SolveError, SolveInfo, SolverParams};
 
 /// The smallest scale for which rounding leaves the preconditioner three digits.
 const LEAST_SCALE: f64 = 1e-13;
-
-const METHOD: Method = Method::Gmres { restart: AUTO_RESTART };
 
 /// The split by which nodal values are taken apart, if the system has one and it is for this solver.
 pub(super) fn split(system: &Bordered) -> Option<&Split> {
@@ -46,53 +44,24 @@ pub(super) fn solve(
     rhs: &[f64],
     params: &SolverParams,
 ) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
-    let operator = Operator { system, levels };
-    let preconditioner = Apart { split, multigrid: levels.multigrid };
-    let b: Vec<f64> = rhs.iter().zip(levels.factors).map(|(b, f)| b * f).collect();
-    let patient = SolverParams { max_iterations: params.max_iterations.min(PATIENCE), ..*params };
-    let (mut x, info) = iterate(METHOD, &operator, &preconditioner, &b, &patient)?;
-    let extra = take_extra(system, &mut x);
-    system.unscale(&mut x);
-    Ok((x, extra, info))
+    let product = |x: &[f64], y: &mut [f64]| multiply(system, levels, x, y);
+    AllRows { system, levels, product: &product }.solve(
+        &Apart { split, multigrid: levels.multigrid },
+        rhs,
+        params,
+    )
 }
 
-/// All equations, their rows scaled.
-struct Operator<'a> {
-    system: &'a Bordered,
-    levels: &'a Levels<'a>,
-}
-
-impl LinearOperator for Operator<'_> {
-    fn dim(&self) -> usize {
-        self.system.n()
-    }
-
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        // The constants stand where `s w` is zero.
-        let mut own = x.to_vec();
-        let extra = take_extra(self.system, &mut own);
-        self.levels.matrix.mul_vec(&own, y);
-        for (c, column) in extra.iter().zip(self.system.columns()) {
-            for &(i, v) in column {
-                y[i as usize] += self.levels.factors[i as usize] * v * c;
-            }
+/// `y = A x` for all equations, their rows scaled.
+fn multiply(system: &Bordered, levels: &Levels<'_>, x: &[f64], y: &mut [f64]) {
+    // The constants stand where `s w` is zero.
+    let mut own = x.to_vec();
+    let extra = take_extra(system, &mut own);
+    levels.matrix.mul_vec(&own, y);
+    for (c, column) in extra.iter().zip(system.columns()) {
+        for &(i, v) in column {
+            y[i as usize] += levels.factors[i as usize] * v * c;
         }
-    }
-}
-
-impl Operator<'_> {
-    fn equations(&self) -> Equations<'_> {
-        Equations { system: self.system, factors: self.levels.factors, scaled: true }
-    }
-}
-
-impl Residuals for Operator<'_> {
-    fn residual(&self, x: &[f64], b: &[f64], r: &mut [f64]) {
-        self.equations().residual(x, b, r);
-    }
-
-    fn backward_error(&self, x: &[f64], b: &[f64]) -> f64 {
-        self.equations().backward_error(x, b)
     }
 }
 
