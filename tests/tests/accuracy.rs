@@ -126,3 +126,49 @@ fn a_checkpoint_and_a_tolerance_do_not_go_together() {
     let outcome = meshless::execute_from(&scene, &plan, Some(&checkpoint), &mut Silent);
     assert!(matches!(outcome, Err(Error::Checkpoint { .. })));
 }
+
+/// A film of 0.02 that most of the drop of u is across.
+const FILM: &str = r#"
+title = "Film"
+dimension = 2
+[domain]
+box = { min = [0, 0], max = [1, 0.2] }
+[points]
+spacing = 0.05
+[[regions]]
+name = "film"
+level_set = "abs(x - 0.5) - 0.01"
+diffusivity = 1e-3
+exact = "1 - (0.49 + 1000*(x - 0.49))/20.98"
+[[regions]]
+name = "rest"
+diffusivity = 1
+exact = "if(x < 0.5, 1 - x/20.98, (1 - x)/20.98)"
+[[boundaries]]
+face = "left"
+dirichlet = 1
+[[boundaries]]
+face = "right"
+dirichlet = 0
+[[boundaries]]
+face = "all"
+neumann = 0
+"#;
+
+#[test]
+fn a_layer_that_the_nodes_do_not_see_leaves_no_estimate() {
+    for method in ["auto", "gfdm-hybrid", "gfdm-classical", "particle-difference"] {
+        let mut scene = Scene::parse(FILM, "film.toml").expect("a scene");
+        Overrides { method: Some(method), ..Overrides::default() }.apply(&mut scene).expect("a method");
+        let report = solve(&scene).expect("a solution").report;
+        assert!(report.errors.expect("an exact solution").l2 > 0.05, "{method}");
+        let layer = report.thin_layer.expect("it is reported");
+        assert!(!layer.seen && layer.region == "film" && (layer.thickness - 0.02).abs() < 1e-6);
+        assert!(report.estimate.l2.is_none() && report.estimate.why_not.is_some(), "{method}");
+    }
+}
+
+#[test]
+fn a_tolerance_is_not_met_before_the_nodes_see_all_layers() {
+    reaches(FILM, &[0.2, 0.05, 1e-4]);
+}

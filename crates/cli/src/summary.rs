@@ -26,10 +26,11 @@ fn system(report: &Report) {
     }
     if let Some(layer) = &report.thin_layer {
         say!(
-            "thin layer  \"{}\" is {:.2e} thin near {:?}: less accurate there; a spacing of {:.2e} resolves it",
+            "thin layer  \"{}\" is {:.2e} thin near {:?}: {}; a spacing of {:.2e} resolves it",
             layer.region,
             layer.thickness,
             layer.at,
+            if layer.seen { "less accurate there" } else { "partly missing, the solution may be wrong" },
             layer.resolving_spacing
         );
     }

@@ -22,7 +22,8 @@ pub struct Report {
     /// Why another method ran than the plan says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fallback: Option<String>,
-    /// The layer, gap or inclusion that the fits of the sharp method resolve least; absent where all are two spacings thick.
+    /// The layer, gap or inclusion that the fits of the sharp method resolve least, absent where all are two spacings thick; with
+    /// another method, one that its nodes do not see.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thin_layer: Option<ThinLayerReport>,
     /// Largest diffusivity of a node over the smallest.
@@ -72,6 +73,9 @@ pub struct ThinLayerReport {
     pub thickness: f64,
     /// The spacing that would resolve it.
     pub resolving_spacing: f64,
+    /// Whether nodes on its two sides are kept apart. Where not, it is partly missing in what was solved, and no estimate of
+    /// the error is given.
+    pub seen: bool,
 }
 
 /// The time steps of an unsteady scene.
@@ -144,7 +148,7 @@ pub struct Rung {
     pub unknowns: usize,
     /// Estimated relative L2 error.
     pub estimate: Option<f64>,
-    /// Why it could not be solved on.
+    /// Why it could not be solved on, or has no estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
     /// Wall-clock seconds.

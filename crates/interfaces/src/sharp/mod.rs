@@ -35,7 +35,7 @@ use maker::{Maker, Row, Scratch};
 pub use params::{Form, MAX_ORDER, SharpParams};
 use sample::Values;
 pub use thickness::RESOLVED;
-pub use thin::{resolving_spacing, suspect, thinnest, unresolved};
+pub use thin::{resolving_spacing, suspect, thinnest, unresolved, unseen};
 use unknowns::Unknowns;
 
 /// The sharp method.

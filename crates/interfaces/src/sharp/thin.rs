@@ -26,9 +26,18 @@ const NONE_INSIDE: f64 = 1.0;
 /// [`MethodError::ThinLayer`] where two neighbouring nodes of one region lie on both sides of a layer: its region would be
 /// taken for connected across, and a fit to both sides by one polynomial would not see the layer.
 pub(super) fn check<const D: usize>(problem: &Problem<'_, D>) -> Result<(), MethodError> {
+    unseen(problem)?.map_or(Ok(()), |layer| Err(unresolved(&layer)))
+}
+
+/// A layer that two neighbouring nodes of one region lie on both sides of, where there is one: whatever the method, its nodes
+/// do not see that the layer parts them, and a coarser cloud does not tell.
+///
+/// # Errors
+/// Those of [`CellList::new`].
+pub fn unseen<const D: usize>(problem: &Problem<'_, D>) -> Result<Option<ThinLayer<D>>, MethodError> {
     let layers = layers(problem);
     if layers.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
     let middles: Vec<[f64; D]> = layers.iter().map(|layer| layer.at).collect();
     let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
@@ -45,10 +54,10 @@ pub(super) fn check<const D: usize>(problem: &Problem<'_, D>) -> Result<(), Meth
         if let Some(layer) = near.min_by(|a, b| a.thickness.total_cmp(&b.thickness))
             && sees_through(problem, (i, j), layer)
         {
-            return Err(unresolved(layer));
+            return Ok(Some(*layer));
         }
     }
-    Ok(())
+    Ok(None)
 }
 
 /// Whether the way between two nodes of one region leads through a layer, in by one of its sides and out by the opposite one.

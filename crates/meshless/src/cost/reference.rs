@@ -3,7 +3,7 @@
 use meshless_interfaces::{Sample, Sampler};
 
 use super::candidates::Candidate;
-use crate::execute::{Silent, Solved, estimate, solve_in};
+use crate::execute::{Silent, Solved, estimate, solve_in, thin_layer};
 use crate::norms::ErrorNorms;
 use crate::plan::{Effect, Plan, Stage};
 use crate::scene::{MethodName, Scene};
@@ -126,7 +126,8 @@ impl<const D: usize> Finest<D> {
         let scene = build::with_spacing_times(scene, ratio);
         let plan = Plan::new(&scene)?;
         let solved = solve_in::<D>(&scene, &plan.companion(), None, &mut Silent)?;
-        let own_error = estimate(&scene, &plan, &solved)?.0.l2;
+        let thin_layer = thin_layer(&scene, &plan, &solved.discrete.problem())?;
+        let own_error = estimate(&scene, &plan, &solved, thin_layer.as_ref())?.0.l2;
         Ok(Self { solved, plan, own_error })
     }
 

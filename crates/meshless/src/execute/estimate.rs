@@ -7,6 +7,8 @@
 //!
 //! A method that has a finer order of itself on the same stencils is compared with that instead, on the same cloud: the
 //! difference is the error but for that of the finer order.
+//!
+//! Where the nodes do not see a layer no comparison of theirs does, and there is no estimate.
 
 use meshless_interfaces::{Sampler, SystemParams, solve};
 use rayon::prelude::*;
@@ -14,7 +16,7 @@ use rayon::prelude::*;
 use super::{Silent, Solved, solve_in};
 use crate::norms::ErrorNorms;
 use crate::plan::{MethodParams, Plan, Stage};
-use crate::report::Estimate;
+use crate::report::{Estimate, ThinLayerReport};
 use crate::scene::Scene;
 use crate::{Error, build};
 
@@ -27,7 +29,12 @@ pub(crate) fn estimate<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     solved: &Solved<D>,
+    thin_layer: Option<&ThinLayerReport>,
 ) -> Result<(Estimate, Option<Vec<f64>>), Error> {
+    if let Some(layer) = thin_layer.filter(|layer| !layer.seen) {
+        let why_not = format!("nodes on both sides of a layer of \"{}\" do not see it", layer.region);
+        return Ok((Estimate { l2: None, why_not: Some(why_not) }, None));
+    }
     match plan.method.params.finer(D) {
         // A higher order knows no more of interfaces from labels.
         Some(finer) if scene.time.is_none() && !plan.runs(Stage::PhaseField) => {

@@ -9,13 +9,13 @@ mod picture;
 mod refine;
 mod reproduce;
 mod summary;
+mod thin_layer;
 mod unsteady;
 
 use std::time::Instant;
 
-use meshless_geometry::ThinLayer;
 use meshless_interfaces::{
-    Discretization, MethodError, Problem, RowKind, SystemParams, SystemSolution, diagnose_nodes, sharp, solve,
+    Discretization, MethodError, RowKind, SystemParams, SystemSolution, diagnose_nodes, sharp, solve,
 };
 
 use crate::plan::{MethodParams, Plan, Stage};
@@ -27,6 +27,7 @@ pub(crate) use estimate::estimate;
 pub use linear::{PseudoTimeCost, linear_system, pseudo_time};
 pub use picture::Picture;
 pub use reproduce::{Reproduction, reproduce};
+pub(crate) use thin_layer::thin_layer;
 use unsteady::History;
 pub use unsteady::{Checkpoint, Frame};
 
@@ -180,11 +181,6 @@ fn solve_steady<const D: usize>(
     Ok(Solved { discrete, discretization, system, seconds, history: None })
 }
 
-/// The layer or gap that fits across interfaces resolve least, where one is too thin for them.
-fn thin_layer<const D: usize>(plan: &Plan, problem: &Problem<'_, D>) -> Option<ThinLayer<D>> {
-    matches!(plan.method.params, MethodParams::Sharp(_)).then(|| sharp::thinnest(problem)).flatten()
-}
-
 fn execute_in<const D: usize>(
     whole: &Scene,
     plan: &Plan,
@@ -222,8 +218,9 @@ fn execute_in<const D: usize>(
     seconds.post = post.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
     let before = Instant::now();
+    let thin_layer = thin_layer(scene, plan, &problem)?;
     let (estimate, differences) = if plan.runs(Stage::Estimate) {
-        estimate(whole, plan, &solved)?
+        estimate(whole, plan, &solved, thin_layer.as_ref())?
     } else {
         (Estimate { l2: None, why_not: Some("not asked for".to_owned()) }, None)
     };
@@ -236,7 +233,7 @@ fn execute_in<const D: usize>(
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    let report = Report { fallback, ..report };
+    let report = Report { fallback, thin_layer, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames })
 }

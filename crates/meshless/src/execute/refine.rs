@@ -63,7 +63,9 @@ pub(super) fn refine(
             Ok(solution) => {
                 let report = &solution.report;
                 let estimate = report.estimate.l2;
-                let rung = Rung { spacing: report.spacing, unknowns: report.unknowns, ..Rung::default() };
+                let why = report.estimate.why_not.clone();
+                let rung =
+                    Rung { spacing: report.spacing, unknowns: report.unknowns, why, ..Rung::default() };
                 (estimate, rung, Some(solution))
             }
             Err(error) if error.is_too_coarse() => {

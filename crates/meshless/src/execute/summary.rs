@@ -1,13 +1,12 @@
 //! The figures about a solve.
 
-use meshless_interfaces::{Condition, RowKind, sharp};
+use meshless_interfaces::{Condition, RowKind};
 
 use super::Solved;
 use crate::memory::peak_memory_mb;
 use crate::plan::{Effect, Plan};
 use crate::report::{
     Errors, Estimate, Extrema, MatrixSummary, NodeReport, Probe, Report, Seconds, SolverReport,
-    ThinLayerReport,
 };
 use crate::scene::Scene;
 
@@ -34,12 +33,7 @@ pub(super) fn report<const D: usize>(
         method: plan.method.name.as_str().to_owned(),
         order: plan.method.params.order(),
         fallback: None,
-        thin_layer: super::thin_layer(plan, &problem).map(|layer| ThinLayerReport {
-            region: scene.regions[layer.region as usize].name.clone(),
-            at: layer.at.to_vec(),
-            thickness: layer.thickness,
-            resolving_spacing: sharp::resolving_spacing(&layer),
-        }),
+        thin_layer: None,
         contrast: problem.contrast(),
         effects: plan.effects.iter().map(|e| e.name().to_owned()).collect(),
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),

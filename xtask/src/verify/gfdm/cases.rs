@@ -19,6 +19,8 @@ pub(super) struct Case {
     pub(super) strips: bool,
     /// The jump of the picture and that of the diagrams over the spacing.
     pub(super) shown: f64,
+    /// Powers of ten of the jumps at which claims look at the strong forms on the finest cloud.
+    pub(super) compared: &'static [i32],
 }
 
 /// The jump from the middle to the right strip is the same for all jumps from the left to the middle one.
@@ -34,6 +36,7 @@ pub(super) const CASES: [Case; 4] = [
         both_directions: true,
         strips: true,
         shown: 1e10,
+        compared: &[2, 4, 10],
     },
     Case {
         name: "curved",
@@ -43,6 +46,7 @@ pub(super) const CASES: [Case; 4] = [
         both_directions: true,
         strips: false,
         shown: 1e10,
+        compared: &[2, 4, 10],
     },
     Case {
         name: "interior",
@@ -52,6 +56,7 @@ pub(super) const CASES: [Case; 4] = [
         both_directions: false,
         strips: false,
         shown: 1e10,
+        compared: &[4, 10],
     },
     Case {
         name: "three-strip",
@@ -62,6 +67,7 @@ pub(super) const CASES: [Case; 4] = [
         both_directions: false,
         strips: true,
         shown: 1e6,
+        compared: &[],
     },
 ];
 

@@ -53,7 +53,8 @@ fn rungs(effort: Effort, case: &Case, variant: &Variant, jump: f64) -> usize {
     let quick = effort == Effort::Quick;
     let strong = variant.method == "gfdm-classical";
     // A jump of 10 is where the criterion for the selection fails: what is compared there climbs as far.
-    let compared = matches!(power, 2 | 4 | 10) || shown || power == 1 && *variant == Variant::strong(0, true);
+    let compared =
+        case.compared.contains(&power) || shown || power == 1 && *variant == Variant::strong(0, true);
     let to_claims = CLAIMED + 1;
     let rungs = match *variant {
         HYBRID if power.abs() >= 2 || !quick => to_claims,
