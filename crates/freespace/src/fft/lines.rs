@@ -54,7 +54,7 @@ impl Machine {
 pub(crate) struct Lines<T: Real> {
     len: usize,
     /// Largest blocks first.
-    stages: Vec<Stage<T>>,
+    pub(super) stages: Vec<Stage<T>>,
     /// For lengths with other prime factors than 2, 3 and 5.
     library: Option<Library<T>>,
     /// The wave number at each place of a transform, modulo the length.
@@ -246,7 +246,7 @@ impl<T: Real> Lines<T> {
 }
 
 /// One stage after the other.
-fn run<'a, T: Real>(
+pub(super) fn run<'a, T: Real>(
     machine: &Machine,
     stages: impl Iterator<Item = &'a Stage<T>>,
     step: Step,

@@ -8,6 +8,7 @@
 
 mod butterfly;
 mod ends;
+mod even;
 mod factors;
 mod lanes;
 mod lines;

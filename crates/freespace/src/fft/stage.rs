@@ -15,7 +15,7 @@ pub(super) struct Stage<T> {
     pub(super) radix: usize,
     pub(super) below: usize,
     /// `exp(-2 pi i j k / n)` for place j of a block of n and k from 1 on, which runs fastest.
-    factors: Vec<[T; 2]>,
+    pub(super) factors: Vec<[T; 2]>,
 }
 
 impl<T: Real> Stage<T> {

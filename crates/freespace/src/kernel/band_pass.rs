@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::{Gaussian, Radial};
+use super::{Gaussian, Radial, Smooth};
 use crate::error::FreeSpaceError;
 use crate::special::{e1, ein};
 
@@ -34,6 +34,12 @@ impl<const D: usize> BandPass<D> {
         }
         let (fine, coarse) = (Gaussian::new(order, sigma)?, Gaussian::new(order, ratio * sigma)?);
         Ok(Self { fine, coarse, ratio })
+    }
+
+    /// It varies like the finer of the two kernels.
+    pub(crate) fn smooth(&self) -> Option<Smooth> {
+        let error = 4e-16 * self.value(0.0).abs();
+        Some(Smooth { width: 0.4 * self.fine.sigma(), error })
     }
 
     /// The distance beyond which the kernel is below `tolerance` times its value at the origin.

@@ -5,13 +5,16 @@ use std::f64::consts::{FRAC_1_SQRT_2, LN_2, PI, SQRT_2};
 use super::Radial;
 use super::laguerre::laguerre;
 use crate::error::FreeSpaceError;
-use crate::special::{EULER, e1, ein};
+use crate::special::{EULER, e1, ein, logarithms};
 
 /// Largest order that there are kernels of.
 pub(crate) const MAX_ORDER: usize = 20;
 
 /// `x = r^2 / 2 sigma^2` beyond which `e^-x` times the polynomials of the highest order is below 1e-20 of the kernel.
 const FAR: f64 = 90.0;
+
+/// Values that are computed together.
+const BLOCK: usize = 64;
 
 /// Where E1 and ln take over from the entire function Ein.
 const ENTIRE: f64 = 1.5;
@@ -158,5 +161,27 @@ impl<const D: usize> Radial for Gaussian<D> {
             };
         }
         self.second_order(r, x) + self.polynomial(x) * (-x).exp()
+    }
+
+    /// Most points of a mesh are so far away that nothing is left of the regularisation.
+    fn values(&self, unit: f64, squares: &mut [f64]) {
+        let far = 2.0 * FAR * (self.sigma / unit).powi(2);
+        let mut singular = [0.0; BLOCK];
+        for squares in squares.chunks_mut(BLOCK) {
+            let singular = &mut singular[..squares.len()];
+            singular.copy_from_slice(squares);
+            match D {
+                1 => singular.iter_mut().for_each(|s| *s = -0.5 * unit * s.sqrt()),
+                2 => {
+                    let of_unit = unit.ln();
+                    logarithms(singular);
+                    singular.iter_mut().for_each(|s| *s = -(of_unit + 0.5 * *s) / (2.0 * PI));
+                }
+                _ => singular.iter_mut().for_each(|s| *s = 1.0 / (4.0 * PI * unit * s.sqrt())),
+            }
+            for (square, singular) in squares.iter_mut().zip(singular) {
+                *square = if *square > far { *singular } else { self.value(unit * square.sqrt()) };
+            }
+        }
     }
 }

@@ -3,6 +3,7 @@
 mod band_pass;
 mod gaussian;
 mod laguerre;
+mod pieces;
 mod screened;
 mod spectral;
 mod truncated;
@@ -10,6 +11,7 @@ mod truncated;
 pub use band_pass::BandPass;
 pub use gaussian::Gaussian;
 pub(crate) use gaussian::passed;
+pub(crate) use pieces::{Pieces, Smooth};
 pub(crate) use screened::Screened;
 pub use spectral::Spectral;
 pub use truncated::Truncated;
@@ -20,6 +22,12 @@ use crate::error::FreeSpaceError;
 pub trait Radial: Sync {
     /// Value at distance `r >= 0`.
     fn value(&self, r: f64) -> f64;
+
+    /// Replaces squares of distances, in units of `unit` squared, by the values there: for kernels of which many values together take less
+    /// time than one by one.
+    fn values(&self, unit: f64, squares: &mut [f64]) {
+        squares.iter_mut().for_each(|s| *s = self.value(unit * s.sqrt()));
+    }
 }
 
 /// Which kernel a plan convolves with.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{LN_2, PI};
 
-use super::Radial;
+use super::{Radial, Smooth};
 use crate::error::FreeSpaceError;
 use crate::special::{EULER, one_minus_j0, one_minus_j0_integral, sine_integral};
 
@@ -24,6 +24,12 @@ impl<const D: usize> Spectral<D> {
         const { assert!(D >= 1 && D <= 3, "kernels have one, two or three dimensions") };
         FreeSpaceError::unless_positive("smoothing radius", sigma)?;
         Ok(Self { sigma })
+    }
+
+    /// It oscillates with the wave number `1/sigma`; in two dimensions about a logarithm.
+    pub(crate) fn smooth(&self) -> Option<Smooth> {
+        let error = if D == 2 { 3e-16 } else { 0.0 };
+        (D > 1).then_some(Smooth { width: 1.5 * PI * self.sigma, error })
     }
 
     /// The derivative of the kernel with respect to the distance.

@@ -1,7 +1,8 @@
 //! The singular Green's function, cut off at a radius.
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{PI, SQRT_2};
 
+use super::Smooth;
 use crate::error::FreeSpaceError;
 use crate::special::one_minus_j0;
 
@@ -42,6 +43,12 @@ impl<const D: usize> Truncated<D> {
             2 => one_minus_j0(x) / (k * k) - l * l.ln() * libm::j1(x) / k,
             _ => (SQRT_2 * (0.5 * x).sin() / k).powi(2),
         }
+    }
+
+    /// It oscillates with the radius; in three dimensions it is a sine, which polynomials are no faster than.
+    pub(crate) fn smooth(&self) -> Option<Smooth> {
+        let error = 1e-16 * self.radius * self.radius;
+        (D == 2).then_some(Smooth { width: 1.5 * PI / self.radius, error })
     }
 
     /// Checks that the box and the radius fit into each period.

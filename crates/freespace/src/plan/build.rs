@@ -7,9 +7,10 @@ use super::estimate::Estimate;
 use super::memory;
 use super::octant::{Mixed, Octant};
 use super::real::Real;
+use super::sample::Samples;
 use crate::error::FreeSpaceError;
 use crate::fft::Machine;
-use crate::kernel::{Gaussian, Kernel, Radial, Spectral, Truncated, default_smoothing, passed};
+use crate::kernel::{Gaussian, Kernel, Radial, Smooth, Spectral, Truncated, default_smoothing, passed};
 use crate::mesh::Mesh;
 
 /// Smoothing radii that the density of any order ends within, to round-off.
@@ -100,9 +101,10 @@ impl Layout {
         })
     }
 
-    /// Ĝ of a kernel of the distance in open directions.
-    pub(super) fn radial(&self, kernel: &dyn Radial) -> Octant {
-        Octant::of_radial(kernel, self.half(), self.spacing)
+    /// Ĝ of a kernel of the distance in open directions, which may be known to be smooth.
+    pub(super) fn radial(&self, kernel: &dyn Radial, smooth: Option<Smooth>) -> Octant {
+        let samples = Samples { shape: self.half(), spacing: self.spacing };
+        Octant::of_samples(samples.of(kernel, smooth), self.half(), self.spacing)
     }
 
     /// The engine with this Ĝ.
@@ -177,8 +179,11 @@ pub(super) fn planned<const D: usize, T: Real>(
             )?;
             Octant::of_truncated(&kernel, wide.map(|n| n / 2 + 1), layout.half(), layout.spacing)
         }
-        (None, Some((order, sigma))) => layout.radial(&Gaussian::<D>::new(order, sigma)?),
-        (None, None) => layout.radial(&Spectral::<D>::new(coarsest(mesh) / std::f64::consts::PI)?),
+        (None, Some((order, sigma))) => layout.radial(&Gaussian::<D>::new(order, sigma)?, None),
+        (None, None) => {
+            let kernel = Spectral::<D>::new(coarsest(mesh) / std::f64::consts::PI)?;
+            layout.radial(&kernel, kernel.smooth())
+        }
     };
     Ok(layout.engine(octant, gaussian))
 }

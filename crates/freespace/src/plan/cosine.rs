@@ -45,18 +45,22 @@ impl Cosine {
         }
     }
 
+    /// The transform of what is in the packs, a place of all lines after the other.
+    fn transform<'s>(&'s self, scratch: &'s mut Scratch) -> impl Iterator<Item = &'s [f64]> {
+        self.lines.forward_even(&self.machine, &scratch.packs, &mut scratch.values);
+        let (values, width) = (&scratch.values[..], self.width());
+        (0..self.half).map(move |k| &values[self.lines.place_of_even(k) * width..][..width])
+    }
+
     /// Transforms what is in the packs.
-    fn transform(&self, scratch: &mut Scratch) {
-        let Scratch { values, packs, .. } = scratch;
+    fn in_place(&self, scratch: &mut Scratch) {
+        let mut packs = std::mem::take(&mut scratch.packs);
+        self.lines.forward_even(&self.machine, &packs, &mut scratch.values);
         let width = self.width();
-        values[..packs.len()].copy_from_slice(packs);
-        for (j, from) in packs.chunks_exact(width).enumerate().take(self.half - 1).skip(1) {
-            copy(from, &mut values[(2 * (self.half - 1) - j) * width..][..width]);
+        for (k, to) in packs.chunks_exact_mut(width).enumerate() {
+            copy(&scratch.values[self.lines.place_of_even(k) * width..][..width], to);
         }
-        self.lines.forward(&self.machine, values);
-        for (to, [place, _]) in packs.chunks_exact_mut(width).zip(self.lines.opposite()) {
-            copy(&values[*place as usize * width..][..width], to);
-        }
+        scratch.packs = packs;
     }
 
     /// Transforms lines that lie one behind the other.
@@ -70,7 +74,7 @@ impl Cosine {
                 let (lines, values) = (&these[..lanes], &mut scratch.packs[..]);
                 self.machine.run(FromReals { lines, count: half, values, first: part, stride: 2 });
             }
-            self.transform(scratch);
+            self.in_place(scratch);
             for part in 0..2 {
                 let mut these: [&mut [f64]; MOST] = std::array::from_fn(|_| &mut [][..]);
                 let present = lines.chunks_exact_mut(half).skip(part * lanes).take(lanes);
@@ -91,8 +95,7 @@ impl Cosine {
                 copy(&row[first..first + count], &mut to[..count]);
                 to[count..].fill(0.0);
             }
-            self.transform(scratch);
-            for (row, from) in rows.iter_mut().zip(scratch.packs.chunks_exact(self.width())) {
+            for (row, from) in rows.iter_mut().zip(self.transform(scratch)) {
                 copy(&from[..count], &mut row[first..first + count]);
             }
         }

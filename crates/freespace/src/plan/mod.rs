@@ -15,10 +15,11 @@ mod output;
 mod packs;
 mod real;
 mod recipe;
+mod sample;
 mod tile;
 
 use crate::error::FreeSpaceError;
-use crate::kernel::{Kernel, Radial};
+use crate::kernel::{Kernel, Radial, Smooth};
 use crate::mesh::Mesh;
 use build::{Layout, slot};
 use engine::{Engine, Spectra};
@@ -126,7 +127,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let layout = Layout::with_boundaries(mesh, [Boundary::OPEN; D])?;
         memory::check::<T>(layout.points, layout.lengths(), None, None)?;
-        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel), None), closed: None })
+        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel, None), None), closed: None })
     }
 
     /// The same without padding, for a function that vanishes beyond some distance: results are right at the points that
@@ -136,9 +137,18 @@ impl<const D: usize, T: Real> Plan<D, T> {
     /// More memory than there is.
     pub fn with_compact(mesh: &Mesh<D>, kernel: &dyn Radial) -> Result<Self, FreeSpaceError> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
+        Self::compact(mesh, kernel, None)
+    }
+
+    /// The same with a kernel of which it is known how smooth it is.
+    pub(crate) fn compact(
+        mesh: &Mesh<D>,
+        kernel: &dyn Radial,
+        smooth: Option<Smooth>,
+    ) -> Result<Self, FreeSpaceError> {
         let layout = Layout::compact(mesh);
         memory::check::<T>(layout.points, layout.lengths(), None, None)?;
-        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel), None), closed: None })
+        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel, smooth), None), closed: None })
     }
 
     /// The mesh.

@@ -263,7 +263,7 @@ impl<const D: usize> Level<D> {
         let finest = mesh.spacing().into_iter().fold(f64::INFINITY, f64::min);
         let band = (kernel.reach(params.tolerance) / finest).ceil() as usize + TAPER;
         let sampled = evaluated.grown(band)?;
-        let plan = Plan::with_compact(&sampled, &kernel)?;
+        let plan = Plan::compact(&sampled, &kernel, kernel.smooth())?;
         Ok(Self { plan, parent: None, mesh, evaluated, margin, band })
     }
 
