@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 
 use crate::error::FreeSpaceError;
@@ -32,6 +33,8 @@ pub struct Spectrum {
     shells: Vec<(f64, f64)>,
     spacing: f64,
     dimension: usize,
+    /// Of a vector field, the part that is a gradient.
+    gradient: Option<f64>,
 }
 
 impl Spectrum {
@@ -40,21 +43,17 @@ impl Spectrum {
     /// # Errors
     /// A source of the wrong length or with values that are not finite.
     pub fn new<const D: usize>(mesh: &Mesh<D>, source: &[f64]) -> Result<Self, FreeSpaceError> {
-        crate::plan::check_values("source", source, mesh.len())?;
-        let points = mesh.points();
-        let mut values: Vec<Complex<f64>> = source.iter().map(|&v| Complex::new(v, 0.0)).collect();
-        let mut stride = 1;
-        for n in points {
-            transform(&mut values, n, stride);
-            stride *= n;
-        }
-        let units: [f64; D] = std::array::from_fn(|a| TAU / (points[a] as f64 * mesh.spacing()[a]));
+        Ok(Self::of_transform(mesh, &transformed(mesh, source)?))
+    }
+
+    fn of_transform<const D: usize>(mesh: &Mesh<D>, values: &[Complex<f64>]) -> Self {
+        let units = units(mesh);
         let width = units.iter().copied().fold(f64::INFINITY, f64::min);
+        let waves = waves(mesh, units);
         let mut shells: Vec<(f64, f64)> = Vec::new();
         for (index, value) in values.iter().enumerate() {
             let places = mesh.indices(index);
-            let square: f64 =
-                (0..D).map(|a| (units[a] * places[a].min(points[a] - places[a]) as f64).powi(2)).sum();
+            let square: f64 = (0..D).map(|a| waves[a][places[a]].powi(2)).sum();
             let shell = (square.sqrt() / width).round() as usize;
             if shell >= shells.len() {
                 shells.resize(shell + 1, (0.0, 0.0));
@@ -64,8 +63,20 @@ impl Spectrum {
         shells.iter_mut().enumerate().for_each(|(i, shell)| shell.0 = i as f64 * width);
         // What belongs to the constant is no oscillation; beyond it nothing is divided by zero.
         shells.first_mut().into_iter().for_each(|s| s.0 = 0.5 * width);
+        Self { shells, ..Self::nothing(mesh) }
+    }
+
+    fn nothing<const D: usize>(mesh: &Mesh<D>) -> Self {
         let spacing = mesh.spacing().into_iter().fold(0.0, f64::max);
-        Ok(Self { shells, spacing, dimension: D })
+        Self { shells: Vec::new(), spacing, dimension: D, gradient: None }
+    }
+
+    /// Shells of one mesh are the same.
+    fn add(&mut self, other: Self) {
+        self.shells.resize(self.shells.len().max(other.shells.len()), (0.0, 0.0));
+        for (sum, (k, power)) in self.shells.iter_mut().zip(other.shells) {
+            *sum = (k, sum.1 + power);
+        }
     }
 
     /// The spectrum of several sources on one mesh together, such as the components of a vector.
@@ -73,17 +84,47 @@ impl Spectrum {
     /// # Errors
     /// As for [`Self::new`].
     pub fn of_all<const D: usize>(mesh: &Mesh<D>, sources: &[&[f64]]) -> Result<Self, FreeSpaceError> {
-        let spacing = mesh.spacing().into_iter().fold(0.0, f64::max);
-        let mut all = Self { shells: Vec::new(), spacing, dimension: D };
-        for source in sources {
-            let one = Self::new(mesh, source)?;
-            // Shells of one mesh are the same.
-            all.shells.resize(all.shells.len().max(one.shells.len()), (0.0, 0.0));
-            for (sum, (k, power)) in all.shells.iter_mut().zip(one.shells) {
-                *sum = (k, sum.1 + power);
-            }
-        }
+        let mut all = Self::nothing(mesh);
+        sources.iter().try_for_each(|source| Self::new(mesh, source).map(|one| all.add(one)))?;
         Ok(all)
+    }
+
+    /// The same of a vector field, such as a vorticity, and of further sources; [`Self::gradient_part`] is known then.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn of_vector<const D: usize>(
+        mesh: &Mesh<D>,
+        vector: [&[f64]; D],
+        sources: &[&[f64]],
+    ) -> Result<Self, FreeSpaceError> {
+        let mut all = Self::of_all(mesh, sources)?;
+        // Only ratios of wave numbers matter.
+        let units = units(mesh);
+        let waves = waves(mesh, units.map(|unit| unit / units[0]));
+        let square = |i: [usize; D]| (0..D).map(|a| waves[a][i[a]].powi(2)).sum::<f64>();
+        let (mut divergence, mut whole) = (vec![Complex::new(0.0, 0.0); mesh.len()], 0.0);
+        for (axis, component) in vector.into_iter().enumerate() {
+            let values = transformed(mesh, component)?;
+            let signed = signed(&waves[axis]);
+            for (index, (sum, value)) in divergence.iter_mut().zip(&values).enumerate().skip(1) {
+                let i = mesh.indices(index);
+                *sum += value * signed[i[axis]];
+                whole += value.norm_sqr() / square(i).powi(2);
+            }
+            all.add(Self::of_transform(mesh, &values));
+        }
+        let of =
+            |(index, value): (usize, &Complex<f64>)| value.norm_sqr() / square(mesh.indices(index)).powi(3);
+        let part: f64 = divergence.iter().enumerate().skip(1).map(of).sum();
+        all.gradient = Some(if whole > 0.0 { (part / whole).sqrt() } else { 0.0 });
+        Ok(all)
+    }
+
+    /// How much of a vector field is a gradient: the L2 norm of what it adds to the potentials, relative to theirs. A vorticity is a curl
+    /// and has nothing of it; what it has nevertheless, the curl of [`Output::Curl`](crate::Output::Curl) does not. None without a vector field.
+    pub fn gradient_part(&self) -> Option<f64> {
+        self.gradient
     }
 
     /// The error that is expected of a kernel: what it leaves out of the resolved wave numbers, the images of its
@@ -157,16 +198,77 @@ fn held_back(order: usize, s: f64) -> f64 {
     (-x).exp() * sum
 }
 
+/// The least wave number of each direction.
+fn units<const D: usize>(mesh: &Mesh<D>) -> [f64; D] {
+    std::array::from_fn(|a| TAU / (mesh.points()[a] as f64 * mesh.spacing()[a]))
+}
+
+/// Magnitudes of the wave numbers of each direction.
+fn waves<const D: usize>(mesh: &Mesh<D>, units: [f64; D]) -> [Vec<f64>; D] {
+    std::array::from_fn(|a| {
+        let n = mesh.points()[a];
+        (0..n).map(|i| units[a] * i.min(n - i) as f64).collect()
+    })
+}
+
+/// The factors of a derivative, over i: the Nyquist frequency has none.
+fn signed(waves: &[f64]) -> Vec<f64> {
+    let n = waves.len();
+    let sign = |i: usize| match (2 * i).cmp(&n) {
+        std::cmp::Ordering::Less => 1.0,
+        std::cmp::Ordering::Equal => 0.0,
+        std::cmp::Ordering::Greater => -1.0,
+    };
+    waves.iter().enumerate().map(|(i, wave)| sign(i) * wave).collect()
+}
+
+/// The transform of a source, without padding.
+fn transformed<const D: usize>(mesh: &Mesh<D>, source: &[f64]) -> Result<Vec<Complex<f64>>, FreeSpaceError> {
+    crate::plan::check_values("source", source, mesh.len())?;
+    let mut values: Vec<Complex<f64>> = source.iter().map(|&v| Complex::new(v, 0.0)).collect();
+    let mut stride = 1;
+    for n in mesh.points() {
+        transform(&mut values, n, stride);
+        stride *= n;
+    }
+    Ok(values)
+}
+
+/// Lines that are transformed one after the other: places of them that lie side by side are in one or two lines of the cache.
+const TOGETHER: usize = 8;
+
 /// Transforms the lines of `n` values that are `stride` apart.
 fn transform(values: &mut [Complex<f64>], n: usize, stride: usize) {
     let [forward, _] = f64::complex(n);
-    let mut line = vec![Complex::default(); n];
-    let mut scratch = vec![Complex::default(); forward.get_inplace_scratch_len()];
+    let scratch = || {
+        let zeros = |n: usize| vec![Complex::new(0.0, 0.0); n];
+        (zeros(n * TOGETHER), zeros(forward.get_inplace_scratch_len()))
+    };
+    if stride == 1 {
+        let all = values.par_chunks_mut(n * TOGETHER);
+        return all
+            .for_each_init(scratch, |(_, scratch), lines| forward.process_with_scratch(lines, scratch));
+    }
+    // For each few lines, their places.
+    let mut pieces: Vec<Vec<&mut [Complex<f64>]>> = Vec::new();
     for block in values.chunks_exact_mut(n * stride) {
-        for first in 0..stride {
-            line.iter_mut().enumerate().for_each(|(i, v)| *v = block[first + i * stride]);
-            forward.process_with_scratch(&mut line, &mut scratch);
-            line.iter().enumerate().for_each(|(i, v)| block[first + i * stride] = *v);
+        let first = pieces.len();
+        pieces.resize_with(first + stride.div_ceil(TOGETHER), || Vec::with_capacity(n));
+        for row in block.chunks_exact_mut(stride) {
+            pieces[first..]
+                .iter_mut()
+                .zip(row.chunks_mut(TOGETHER))
+                .for_each(|(piece, part)| piece.push(part));
         }
     }
+    pieces.par_iter_mut().for_each_init(scratch, |(lines, scratch), places| {
+        let count = places.first().map_or(0, |place| place.len());
+        for (i, place) in places.iter().enumerate() {
+            place.iter().enumerate().for_each(|(line, value)| lines[line * n + i] = *value);
+        }
+        forward.process_with_scratch(&mut lines[..count * n], scratch);
+        for (i, place) in places.iter_mut().enumerate() {
+            place.iter_mut().enumerate().for_each(|(line, value)| *value = lines[line * n + i]);
+        }
+    });
 }

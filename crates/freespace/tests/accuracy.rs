@@ -90,3 +90,35 @@ fn the_spectrum_predicts_errors_and_finds_a_good_kernel() {
     assert!(spectrum.best_for(1e-5).is_ok());
     assert!(matches!(spectrum.best_for(1e-16), Err(FreeSpaceError::Tolerance { .. })));
 }
+
+/// A curl has nothing of a gradient, a gradient nothing else; of a blob along one direction a third of the squares is one, whatever its width.
+#[test]
+fn the_gradient_part_of_a_vector_field_is_known() {
+    let blob = |p: [f64; 3]| (-p.iter().map(|x| x * x).sum::<f64>() / (2.0 * 0.13 * 0.13)).exp();
+    for cells in [[32; 3], [33, 40, 36]] {
+        let mesh = Mesh::of_box([-1.0; 3], [1.0; 3], cells, Centring::Cell).expect("a mesh");
+        let part = |field: &dyn Fn([f64; 3]) -> [f64; 3]| {
+            let components: [Vec<f64>; 3] = std::array::from_fn(|a| mesh.sample(|p| field(p)[a]));
+            let vector: [&[f64]; 3] = std::array::from_fn(|a| &components[a][..]);
+            Spectrum::of_vector(&mesh, vector, &[]).expect("a spectrum").gradient_part().expect("a vector")
+        };
+        let curl = part(&|p| [-p[1] * blob(p), p[0] * blob(p), 0.0]);
+        assert!(curl < 1e-9, "{cells:?}: {curl:e}");
+        let gradient = part(&|p| p.map(|x| x * blob(p)));
+        assert!((gradient - 1.0).abs() < 1e-9, "{cells:?}: {gradient}");
+        let along = part(&|p| [0.0, 0.0, blob(p)]);
+        assert!((along - (1.0_f64 / 3.0).sqrt()).abs() < 1e-3, "{cells:?}: {along}");
+        assert!(part(&|_| [0.0; 3]) == 0.0);
+        // What is added to a curl is found again.
+        let little = part(&|p| [-p[1] * blob(p), p[0] * blob(p), 1e-4 * blob(p)]);
+        assert!(little > 1e-5 && little < 1e-2, "{cells:?}: {little:e}");
+    }
+    let mesh = Mesh::of_box([-1.0; 2], [1.0; 2], [8; 2], Centring::Cell).expect("a mesh");
+    let source = mesh.sample(|p| p[0]);
+    assert_eq!(Spectrum::new(&mesh, &source).expect("a spectrum").gradient_part(), None);
+    let both = Spectrum::of_vector(&mesh, [&source, &source], &[&source]).expect("a spectrum");
+    let three = Spectrum::of_all(&mesh, &[&source[..]; 3]).expect("a spectrum");
+    let kernel = Kernel::gaussian(6);
+    assert!((both.error(kernel) / three.error(kernel) - 1.0).abs() < 1e-12);
+    assert!(Spectrum::of_vector(&mesh, [&source, &[f64::NAN; 64]], &[]).is_err());
+}

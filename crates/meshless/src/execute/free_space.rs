@@ -16,6 +16,12 @@ use crate::report::Seconds;
 use crate::scene::{GreenName, Scene, SpreadName};
 use crate::{Error, MAX_NODES, NodalField, build};
 
+/// The part of a vorticity that may be a gradient: round-off.
+const DIVERGENCE: f64 = 1e-10;
+
+/// How many times what a mesh does not resolve the gradient in the samples of a curl may be.
+const UNRESOLVED: f64 = 10.0;
+
 /// The source on a mesh.
 struct Source<const D: usize> {
     mesh: Mesh<D>,
@@ -41,6 +47,8 @@ impl<const D: usize> Source<D> {
 struct Chosen {
     kernel: Kernel,
     error: f64,
+    /// The part of a vorticity in space that is a gradient, where it is more than what the mesh does not resolve.
+    gradient: Option<f64>,
 }
 
 pub(super) fn execute<const D: usize>(
@@ -145,7 +153,7 @@ fn source<const D: usize>(scene: &Scene, params: FreeSpaceParams) -> Result<(Sou
     let mut times = 1;
     loop {
         let source = sample(scene, times, params.transforms)?;
-        let spectrum = Spectrum::of_all(&source.mesh, &source.transformed(params.transforms))?;
+        let spectrum = spectrum(&source, params.transforms)?;
         let chosen = choose(&spectrum, params)?;
         let Some(tolerance) = params.tolerance.filter(|t| chosen.error > *t) else {
             return Ok((source, chosen));
@@ -157,6 +165,17 @@ fn source<const D: usize>(scene: &Scene, params: FreeSpaceParams) -> Result<(Sou
         }
         times *= 2;
     }
+}
+
+/// The spectrum of all sources; of a vorticity in space, also the part that is a gradient.
+fn spectrum<const D: usize>(source: &Source<D>, transforms: Transforms) -> Result<Spectrum, Error> {
+    let all = source.transformed(transforms);
+    Ok(match all.split_first_chunk::<D>() {
+        Some((vorticity, others)) if D == 3 && transforms.vorticity == D => {
+            Spectrum::of_vector(&source.mesh, *vorticity, others)?
+        }
+        _ => Spectrum::of_all(&source.mesh, &all)?,
+    })
 }
 
 fn sample<const D: usize>(scene: &Scene, times: usize, transforms: Transforms) -> Result<Source<D>, Error> {
@@ -192,5 +211,8 @@ fn choose(spectrum: &Spectrum, params: FreeSpaceParams) -> Result<Chosen, Error>
         (_, None, Some(sigma)) => Kernel::Gaussian { order: 10, smoothing: Some(sigma) },
         _ => spectrum.best().kernel,
     };
-    Ok(Chosen { kernel, error: spectrum.error(kernel) })
+    // Where a mesh does not resolve a curl, its samples are not quite one.
+    let least = DIVERGENCE.max(UNRESOLVED * spectrum.error(Kernel::Spectral));
+    let gradient = spectrum.gradient_part().filter(|part| *part > least);
+    Ok(Chosen { kernel, error: spectrum.error(kernel), gradient })
 }

@@ -47,15 +47,9 @@ pub(super) fn report<const D: usize>(
         Kernel::Spectral => (0, "fft, spectral kernel".to_owned()),
         Kernel::Truncated => (0, "fft, truncated kernel".to_owned()),
     };
-    let all = source.vorticity.iter().chain(std::iter::once(&source.values));
-    let edge = all.map(|values| source.mesh.edge_ratio(values)).fold(0.0, f64::max);
-    let estimate = if edge > EDGE {
-        let why = format!(
-            "the source has {edge:.1e} of its largest value at the edge of the box, and what it has beyond is left out"
-        );
-        Estimate { l2: None, why_not: Some(why) }
-    } else {
-        Estimate { l2: Some(chosen.error.max(ROUND_OFF)), why_not: None }
+    let estimate = match doubt(source, chosen) {
+        Some(why) => Estimate { l2: None, why_not: Some(why) },
+        None => Estimate { l2: Some(chosen.error.max(ROUND_OFF)), why_not: None },
     };
     Report {
         title: scene.title.clone(),
@@ -77,6 +71,22 @@ pub(super) fn report<const D: usize>(
         probes,
         ..Report::default()
     }
+}
+
+/// What is wrong with the sources, so that the error of the solution is not that of the method.
+fn doubt<const D: usize>(source: &Source<D>, chosen: Chosen) -> Option<String> {
+    let all = source.vorticity.iter().chain(std::iter::once(&source.values));
+    let edge = all.map(|values| source.mesh.edge_ratio(values)).fold(0.0, f64::max);
+    if edge > EDGE {
+        return Some(format!(
+            "the source has {edge:.1e} of its largest value at the edge of the box, and what it has beyond is left out"
+        ));
+    }
+    chosen.gradient.map(|part| {
+        format!(
+            "the vorticity has a divergence: {part:.1e} of it is a gradient (by the L2 norm of psi), which the curl of no velocity has"
+        )
+    })
 }
 
 /// Norms over all points and over each region.
