@@ -103,9 +103,66 @@ at = [0.0, 3.0, 0.0]
     let value = report.probes[0].value.expect("a value");
     // Moments up to 4 are kept, and the fifth is small from afar.
     assert!((value / exact - 1.0).abs() < 1e-6, "{value} for {exact}");
+    // The field is read back at the particles by the weights that they were deposited with.
+    std::fs::write(&path, text.to_owned() + "[output]\ncsv = true\n").expect("written");
+    let with_file = Scene::read(&path).expect("a scene");
+    let plan = Plan::new(&with_file).expect("a plan");
+    let solution = execute(&with_file, &plan, &mut Silent).expect("a solution");
+    let particles = solution.particles.as_ref().expect("particles");
+    assert_eq!(particles.strengths, [1.0, 2.0]);
+    // Each is in the field of the other one, and in its own, which is that of a ball of about a cell.
+    let between = 1.0 / (4.0 * std::f64::consts::PI * distance_of(&particles.positions));
+    let own = |i: usize| (particles.u[i] - between * particles.strengths[1 - i]) / particles.strengths[i];
+    assert!((own(0) / own(1) - 1.0).abs() < 0.05 && own(0) > between, "{} {} {between}", own(0), own(1));
+    // Forces between them are opposite, up to what each does to itself where it does not lie as the other one.
+    let gradient = particles.gradient.as_ref().expect("a gradient");
+    assert!(gradient[0][0] < 0.0 && gradient[1][0] > 0.0, "{gradient:?}");
+    let files = meshless::write_outputs(&plan, &solution, folder.path(), "two").expect("files");
+    assert_eq!(files.len(), 2);
+    let table = std::fs::read_to_string(folder.path().join("two-particles.csv")).expect("a file");
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[0], "x,y,z,strength,u,gradient_x,gradient_y,gradient_z");
+    let numbers: Vec<f64> = lines[2].split(',').map(|cell| cell.parse().expect("a number")).collect();
+    assert_eq!(numbers[..5], [-0.3, 0.0, 0.0, 2.0, particles.u[1]]);
+    assert_eq!(lines.len(), 3);
     std::fs::write(folder.path().join("charges.csv"), "0.31,0.02,1.0\n").expect("written");
     let wrong = execute(&scene, &plan, &mut Silent).expect_err("three numbers");
     assert!(wrong.to_string().contains("line 1"), "{wrong}");
+}
+
+/// How far two points are apart.
+fn distance_of(points: &[[f64; 3]]) -> f64 {
+    (0..3).map(|a| (points[0][a] - points[1][a]).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn a_vorticity_with_a_divergence_is_told_how_much_of_it() {
+    let with = |spacing: &str, components: &str| {
+        let start = RING.find("vorticity = [").expect("a vorticity");
+        let end = start + RING[start..].find("]\n").expect("its end") + 2;
+        let text = format!("{}vorticity = {components}\n{}", &RING[..start], &RING[end..]);
+        let text = text.replace("0.8", "1.05");
+        solve(&parse(&text.replace("spacing = 0.05", spacing)))
+    };
+    // A ring is a curl, however coarse the mesh.
+    for spacing in ["spacing = 0.2", "spacing = 0.1", "spacing = 0.05"] {
+        let ring = solve(&parse(&RING.replace("spacing = 0.05", spacing)));
+        let why = ring.estimate.why_not.unwrap_or_default();
+        assert!(!why.contains("divergence"), "{spacing}: {why}");
+    }
+    // Of a blob along one direction a third of the squares is a gradient, in a box whose sides are equal.
+    let blob = "exp(-40*(x^2 + y^2 + z^2))";
+    let along = with("spacing = 0.05", &format!("[0, 0, \"{blob}\"]"));
+    assert!(along.estimate.l2.is_none());
+    let why = along.estimate.why_not.expect("a reason");
+    assert!(why.contains("has a divergence: 5.8e-1 of it is a gradient"), "{why}");
+    let whole = with("spacing = 0.05", &format!("[\"x*{blob}\", \"y*{blob}\", \"z*{blob}\"]"));
+    let why = whole.estimate.why_not.expect("a reason");
+    assert!(why.contains("1.0e0 of it is a gradient"), "{why}");
+    // A little of it is found, too.
+    let little = with("spacing = 0.05", &format!("[\"-y*{blob}\", \"x*{blob}\", \"1e-5*{blob}\"]"));
+    let why = little.estimate.why_not.expect("a reason");
+    assert!(["e-4 of it", "e-5 of it"].iter().any(|part| why.contains(part)), "{why}");
 }
 
 #[test]

@@ -1,12 +1,17 @@
 //! Convolution on small meshes: against the direct sum over pairs of points, and what must not change it.
 
 use meshless_freespace::{
-    Centring, FreeSpaceError, Gaussian, Kernel, Mesh, Output, Plan, PlanParams, Radial, Spectral, Workspace,
+    Boundary, Centring, FreeSpaceError, Gaussian, Kernel, Mesh, Output, Plan, PlanParams, Radial, Spectral,
+    Workspace,
 };
 use proptest::prelude::*;
 
 /// Round-off of sums of some hundred numbers, and of transforms of that length, with a factor of ten to spare.
 const ROUND_OFF: f64 = 1e-12;
+
+/// What must not depend on the kernel.
+const KERNELS: [Kernel; 3] =
+    [Kernel::Gaussian { order: 6, smoothing: None }, Kernel::Spectral, Kernel::Truncated];
 
 /// Numbers between -1 and 1 that look random.
 fn noise(count: usize, seed: u64) -> Vec<f64> {
@@ -91,9 +96,11 @@ proptest! {
     }
 
     #[test]
-    fn is_linear_self_adjoint_and_moves_with_its_source(seed in 0_u64..1000, shift in [0_usize..5, 0_usize..4]) {
+    fn is_linear_self_adjoint_and_moves_with_its_source(
+        seed in 0_u64..1000, shift in [0_usize..5, 0_usize..4], which in 0_usize..3,
+    ) {
         let mesh = mesh([14, 11], [0.1, 0.15], Centring::Cell);
-        let plan: Plan<2> = Plan::new(&mesh, Kernel::gaussian(6)).expect("a plan");
+        let plan: Plan<2> = Plan::new(&mesh, KERNELS[which]).expect("a plan");
         let (f, g) = (noise(mesh.len(), seed), noise(mesh.len(), seed + 7));
         let [of_f, of_g] = [&f, &g].map(|s| plan.potential(s).expect("a potential"));
         let sum: Vec<f64> = f.iter().zip(&g).map(|(f, g)| 2.0 * f - 3.0 * g).collect();
@@ -125,9 +132,23 @@ proptest! {
     }
 
     #[test]
-    fn mirrored_sources_have_mirrored_potentials(seed in 0_u64..1000, axis in 0_usize..3) {
+    fn is_linear_and_self_adjoint_in_space(seed in 0_u64..1000, which in 0_usize..3) {
+        let mesh = mesh([6, 7, 5], [0.1, 0.12, 0.2], Centring::Node);
+        let plan: Plan<3> = Plan::new(&mesh, KERNELS[which]).expect("a plan");
+        let (f, g) = (noise(mesh.len(), seed), noise(mesh.len(), seed + 7));
+        let [of_f, of_g] = [&f, &g].map(|s| plan.potential(s).expect("a potential"));
+        let sum: Vec<f64> = f.iter().zip(&g).map(|(f, g)| 0.5 * f + 4.0 * g).collect();
+        let of_sum: Vec<f64> = of_f.iter().zip(&of_g).map(|(f, g)| 0.5 * f + 4.0 * g).collect();
+        prop_assert!(difference(&plan.potential(&sum).expect("a potential"), &of_sum) < ROUND_OFF);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let scale = (dot(&f, &f) * dot(&of_g, &of_g)).sqrt();
+        prop_assert!((dot(&f, &of_g) - dot(&g, &of_f)).abs() < ROUND_OFF * scale);
+    }
+
+    #[test]
+    fn mirrored_sources_have_mirrored_potentials(seed in 0_u64..1000, axis in 0_usize..3, which in 0_usize..3) {
         let mesh = mesh([7, 6, 5], [0.1, 0.12, 0.2], Centring::Cell);
-        let plan: Plan<3> = Plan::new(&mesh, Kernel::Truncated).expect("a plan");
+        let plan: Plan<3> = Plan::new(&mesh, KERNELS[which]).expect("a plan");
         let mirror = |values: &[f64]| -> Vec<f64> {
             (0..mesh.len()).map(|index| {
                 let mut i = mesh.indices(index);
@@ -211,20 +232,29 @@ fn the_curl_turns_and_the_velocity_adds_the_gradient() {
 
 #[test]
 fn the_number_of_threads_changes_no_bit() {
-    let mesh = Mesh::of_box([-1.0; 3], [1.0; 3], [23, 18, 14], Centring::Cell).expect("a mesh");
-    let source = noise(mesh.len(), 5);
-    let solve = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| {
-            let plan: Plan<3> = Plan::new(&mesh, Kernel::gaussian(10)).expect("a plan");
-            let wanted = [Output::Potential { source: 0 }, Output::Gradient { source: 0, axis: 1 }];
-            let mut outputs = Vec::new();
-            plan.solve(&[&source], &wanted, &mut Workspace::default(), &mut outputs).expect("fields");
-            outputs
-        })
-    };
-    let one = solve(1);
-    assert!([2, 3, 7].into_iter().all(|threads| solve(threads) == one));
+    fn check<const D: usize>(cells: [usize; D], params: PlanParams<D>) {
+        let mesh = Mesh::of_box([-1.0; D], [1.0; D], cells, Centring::Cell).expect("a mesh");
+        let source = noise(mesh.len(), 5);
+        let solve = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| {
+                let plan: Plan<D> = Plan::new(&mesh, params).expect("a plan");
+                let wanted = [Output::Potential { source: 0 }, Output::Gradient { source: 0, axis: 1 }];
+                let mut outputs = Vec::new();
+                plan.solve(&[&source], &wanted, &mut Workspace::default(), &mut outputs).expect("fields");
+                outputs
+            })
+        };
+        let one = solve(1);
+        assert!([2, 3, 7].into_iter().all(|threads| solve(threads) == one), "{params:?}");
+    }
+    for kernel in KERNELS {
+        check([23, 18, 14], kernel.into());
+        // Squares, of which half is sampled, and enough of them for polynomials in place of the kernel.
+        check([300, 300], kernel.into());
+    }
+    let boundaries = [Boundary::Periodic, Boundary::OPEN, Boundary::EVEN];
+    check([12, 15, 10], PlanParams { boundaries, remove_mean: true, ..PlanParams::default() });
 }
 
 #[test]

@@ -31,6 +31,23 @@ pub struct NodalField {
     pub diagnosis: Option<Vec<NodeDiagnosis>>,
 }
 
+/// Fields at the particles of a scene in free space, read back from the mesh by the weights that their strengths were deposited with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParticleField {
+    /// 1, 2 or 3.
+    pub dimension: usize,
+    /// Coordinates; those beyond the dimension are zero.
+    pub positions: Vec<[f64; 3]>,
+    /// What each carries.
+    pub strengths: Vec<f64>,
+    /// The solution, what a particle does to itself included.
+    pub u: Vec<f64>,
+    /// Its gradient, where the scene asks for it.
+    pub gradient: Option<Vec<[f64; 3]>>,
+    /// The velocity, where the scene has a vorticity.
+    pub velocity: Option<Vec<[f64; 3]>>,
+}
+
 impl NodalField {
     pub(crate) fn new<const D: usize>(
         discrete: &Discrete<D>,
@@ -56,7 +73,7 @@ impl NodalField {
     }
 }
 
-fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
     let mut padded = [0.0; 3];
     padded[..D].copy_from_slice(x);
     padded

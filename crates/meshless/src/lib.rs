@@ -80,7 +80,7 @@ pub use execute::{
     Checkpoint, Frame, Picture, Progress, PseudoTimeCost, Reproduction, Silent, Solution, execute,
     execute_from, linear_system, pseudo_time, reproduce,
 };
-pub use field::NodalField;
+pub use field::{NodalField, ParticleField};
 pub use methods::{METHODS, MethodInfo};
 pub use outputs::write_outputs;
 pub use overrides::{OverrideError, Overrides};

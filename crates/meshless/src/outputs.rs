@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use meshless_interfaces::{NodeDiagnosis, RowKind};
 use meshless_output::{VtuField, write_text_atomically, write_vtu};
 
-use crate::Error;
 use crate::execute::Solution;
 use crate::plan::{Plan, Stage};
+use crate::{Error, NodalField, ParticleField};
 
-/// Writes what the plan says into `folder`, which must exist, as `stem.vtu`, `stem.csv` and `stem.svg`; returns the files.
+/// Writes what the plan says into `folder`, which must exist, as `stem.vtu`, `stem.csv` and `stem.svg`, and the fields at particles
+/// as `stem-particles.csv`; returns the files.
 ///
 /// Every file is complete or absent.
 pub fn write_outputs(
@@ -29,8 +30,13 @@ pub fn write_outputs(
     }
     if plan.runs(Stage::Csv) {
         let path = folder.join(format!("{stem}.csv"));
-        write_text_atomically(&path, &csv(solution))?;
+        write_text_atomically(&path, &nodes(&solution.field).text())?;
         files.push(path);
+        if let Some(particles) = &solution.particles {
+            let path = folder.join(format!("{stem}-particles.csv"));
+            write_text_atomically(&path, &carried(particles).text())?;
+            files.push(path);
+        }
     }
     if let Some(picture) = &solution.picture {
         let path = folder.join(format!("{stem}.svg"));
@@ -74,26 +80,62 @@ fn regions(solution: &Solution) -> VtuField {
     VtuField::integers("region", solution.field.region.iter().map(|&r| i64::from(r)).collect())
 }
 
-/// A line for each node: coordinates, u, its gradient and the velocity, as far as there are any. Numbers are read back as they are.
-fn csv(solution: &Solution) -> String {
-    const AXES: [&str; 3] = ["x", "y", "z"];
-    let field = &solution.field;
-    let axes = &AXES[..field.dimension];
-    let mut names: Vec<String> = axes.iter().map(|a| (*a).to_owned()).collect();
-    names.push("u".to_owned());
-    let vectors = [("gradient", &field.gradient), ("velocity", &field.velocity)];
-    let vectors = vectors.into_iter().filter_map(|(name, values)| values.as_ref().map(|v| (name, v)));
-    let vectors: Vec<(&str, &Vec<[f64; 3]>)> = vectors.collect();
-    names.extend(vectors.iter().flat_map(|(name, _)| axes.iter().map(move |a| format!("{name}_{a}"))));
-    let mut text = names.join(",") + "\n";
-    for (i, u) in field.u.iter().enumerate() {
-        let own = field.points[i][..axes.len()].iter().chain(std::iter::once(u));
-        let all = own.chain(vectors.iter().flat_map(|(_, v)| &v[i][..axes.len()]));
-        let line: Vec<String> = all.map(f64::to_string).collect();
-        text += &line.join(",");
-        text.push('\n');
+/// A table with a line for each point.
+struct Lines<'a> {
+    points: &'a [[f64; 3]],
+    dimension: usize,
+    scalars: Vec<(&'static str, &'a [f64])>,
+    vectors: Vec<(&'static str, &'a [[f64; 3]])>,
+}
+
+/// Coordinates, u, its gradient and the velocity, as far as there are any.
+fn nodes(field: &NodalField) -> Lines<'_> {
+    Lines {
+        points: &field.points,
+        dimension: field.dimension,
+        scalars: vec![("u", &field.u)],
+        vectors: vectors(&field.gradient, &field.velocity),
     }
-    text
+}
+
+/// The same of particles, with what they carry.
+fn carried(field: &ParticleField) -> Lines<'_> {
+    Lines {
+        points: &field.positions,
+        dimension: field.dimension,
+        scalars: vec![("strength", &field.strengths), ("u", &field.u)],
+        vectors: vectors(&field.gradient, &field.velocity),
+    }
+}
+
+fn vectors<'a>(
+    gradient: &'a Option<Vec<[f64; 3]>>,
+    velocity: &'a Option<Vec<[f64; 3]>>,
+) -> Vec<(&'static str, &'a [[f64; 3]])> {
+    let named = [("gradient", gradient), ("velocity", velocity)];
+    named.into_iter().filter_map(|(name, values)| values.as_deref().map(|v| (name, v))).collect()
+}
+
+impl Lines<'_> {
+    /// Comma-separated, with a line of names. Numbers are read back as they are.
+    fn text(&self) -> String {
+        const AXES: [&str; 3] = ["x", "y", "z"];
+        let axes = &AXES[..self.dimension];
+        let mut names: Vec<String> = axes.iter().map(|a| (*a).to_owned()).collect();
+        names.extend(self.scalars.iter().map(|(name, _)| (*name).to_owned()));
+        names.extend(
+            self.vectors.iter().flat_map(|(name, _)| axes.iter().map(move |a| format!("{name}_{a}"))),
+        );
+        let mut text = names.join(",") + "\n";
+        for (i, point) in self.points.iter().enumerate() {
+            let own = point[..axes.len()].iter().chain(self.scalars.iter().map(|(_, values)| &values[i]));
+            let all = own.chain(self.vectors.iter().flat_map(|(_, v)| &v[i][..axes.len()]));
+            let line: Vec<String> = all.map(f64::to_string).collect();
+            text += &line.join(",");
+            text.push('\n');
+        }
+        text
+    }
 }
 
 fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {

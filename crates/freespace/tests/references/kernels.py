@@ -76,7 +76,27 @@ def spectral(d, r):
     return 1 / (2 * pi ** 2) if r == 0 else si(r) / (2 * pi ** 2 * r)
 
 
+def truncated(d, k, l):
+    """The transform of the singular kernel within the radius l: int_0^l G(r) cos(kr) 2 dr, G(r) J0(kr) 2 pi r dr, G(r) sin(kr)/(kr) 4 pi r^2 dr."""
+    if k == 0:
+        return {1: -l * l / 2, 2: l * l * (1 - 2 * log(l)) / 4, 3: l * l / 2}[d]
+    if d == 1:
+        return (1 - cos(l * k)) / k ** 2 - l * sin(l * k) / k
+    if d == 2:
+        return (1 - besselj(0, l * k)) / k ** 2 - l * log(l) * besselj(1, l * k) / k
+    return 2 * (sin(l * k / 2) / k) ** 2
+
+
 def check():
+    l, k = mpf(2), mpf(3)
+    by_quadrature = {
+        1: quad(lambda r: -r * cos(k * r), [0, l]),
+        2: quad(lambda r: -log(r) * besselj(0, k * r) * r, [0, 1, l]),
+        3: quad(lambda r: sin(k * r) / k, [0, l]),
+    }
+    for d, v in by_quadrature.items():
+        print("truncated", d, mp.nstr(v - truncated(d, k, l), 5), file=sys.stderr)
+
     for d, m in [(3, 6), (3, 20), (2, 8)]:
         r = mpf(3) / 2
         def zhat(k): return exp(-k * k / 2) * sum((k * k / 2) ** j / mp.factorial(j) for j in range(m // 2))
@@ -103,7 +123,7 @@ def show(x):
 
 if __name__ == "__main__":
     check()
-    print("# Written by kernels.py. sigma = 1; the difference is G(r; 1) - G(r; 2), the band pass of ratio 2.")
+    print("# Written by kernels.py. sigma = 1; the difference is G(r; 1) - G(r; 2), the band pass of ratio 2; of truncated kernels of radius 2, r is the wave number.")
     print("kernel,dimension,order,r,value")
     for d in (1, 2, 3):
         for m in range(2, 22, 2):
@@ -123,3 +143,7 @@ if __name__ == "__main__":
                     wide = gaussian(d, m, r / 2) / 2 if d == 3 else gaussian(d, m, r / 2) - log(2) / (2 * pi)
                     v = gaussian(d, m, r) - wide
                 print(f"band-pass,{d},{m},{text},{show(v)}")
+    for d in (1, 2, 3):
+        for text in RADII:
+            with mp.extradps(60):
+                print(f"truncated,{d},0,{text},{show(truncated(d, radius(text), mpf(2)))}")

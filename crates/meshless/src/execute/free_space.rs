@@ -1,20 +1,20 @@
 //! Scenes in free space: a mesh, a convolution, and what is derived from the field.
 
+mod carried;
 mod draw;
 mod probes;
 mod report;
 
 use std::time::Instant;
 
-use meshless_freespace::{
-    Kernel, Mesh, Output, Plan as Convolution, Spectrum, Spread, Workspace, default_smoothing,
-};
+use meshless_freespace::{Kernel, Mesh, Output, Plan as Convolution, Spectrum, Workspace, default_smoothing};
 
 use super::{Progress, Solution};
 use crate::plan::{FreeSpaceParams, MethodParams, Plan, Stage, Transforms};
 use crate::report::Seconds;
-use crate::scene::{GreenName, Scene, SpreadName};
+use crate::scene::{GreenName, Scene};
 use crate::{Error, MAX_NODES, NodalField, build};
+use carried::Carried;
 
 /// The part of a vorticity that may be a gradient: round-off.
 const DIVERGENCE: f64 = 1e-10;
@@ -31,6 +31,8 @@ struct Source<const D: usize> {
     values: Vec<f64>,
     /// Components of the vorticity, if there is one.
     vorticity: Vec<Vec<f64>>,
+    /// Particles that a part of it was deposited from.
+    carried: Option<Carried<D>>,
 }
 
 impl<const D: usize> Source<D> {
@@ -84,6 +86,11 @@ pub(super) fn execute<const D: usize>(
     let start = Instant::now();
     let gradient: Option<Vec<[f64; D]>> =
         transforms.gradient.then(|| vectors(&mut fields, source.points.len()));
+    let particles = source
+        .carried
+        .as_ref()
+        .map(|carried| carried.read(&source.mesh, &u, gradient.as_deref(), velocity.as_deref()));
+    let particles = particles.transpose()?;
     let exact =
         plan.runs(Stage::Errors).then(|| build::exact(scene, &source.points, &source.labels)).transpose()?;
     let errors = match (&exact, &gradient) {
@@ -112,7 +119,7 @@ pub(super) fn execute<const D: usize>(
         diagnosis: None,
         u,
     };
-    Ok(Solution { report, field, picture, frames: Vec::new() })
+    Ok(Solution { report, field, picture, frames: Vec::new(), particles })
 }
 
 /// What is transformed back: the velocity, u and its gradient, as far as they are asked for.
@@ -184,13 +191,10 @@ fn sample<const D: usize>(scene: &Scene, times: usize, transforms: Transforms) -
     let regions = build::regions::<D>(scene)?;
     let labels: Vec<u16> = points.iter().map(|p| regions.label(p, 0.0)).collect();
     let mut values = build::nodal_source(scene, &build::materials(scene), &points, &labels)?;
-    if let Some(spec) = scene.free_space.as_ref().and_then(|s| s.particles.as_ref()) {
-        let (positions, strengths) = build::particles::<D>(spec)?;
-        let spread = match spec.spread {
-            SpreadName::M4Prime => Spread::M4Prime,
-            SpreadName::M6Star => Spread::M6Star,
-        };
-        let density = spread.deposit(&mesh, &positions, &strengths)?;
+    let spec = scene.free_space.as_ref().and_then(|s| s.particles.as_ref());
+    let carried = spec.map(Carried::from_file).transpose()?;
+    if let Some(carried) = &carried {
+        let density = carried.density(&mesh)?;
         values.iter_mut().zip(density).for_each(|(value, d)| *value += d);
     }
     let eta = diffusivity(scene);
@@ -198,7 +202,7 @@ fn sample<const D: usize>(scene: &Scene, times: usize, transforms: Transforms) -
     let vorticity = (0..transforms.vorticity)
         .map(|component| build::nodal_vorticity(scene, component, &points, &labels))
         .collect::<Result<_, _>>()?;
-    Ok(Source { mesh, points, labels, values, vorticity })
+    Ok(Source { mesh, points, labels, values, vorticity, carried })
 }
 
 /// What the scene asks for, and of the rest the best.

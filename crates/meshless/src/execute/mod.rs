@@ -21,7 +21,7 @@ use meshless_interfaces::{
 use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
-use crate::{Error, NodalField};
+use crate::{Error, NodalField, ParticleField};
 pub(crate) use discrete::{Discrete, Exact};
 pub(crate) use estimate::estimate;
 pub use linear::{PseudoTimeCost, linear_system, pseudo_time};
@@ -62,6 +62,8 @@ pub struct Solution {
     pub picture: Option<Picture>,
     /// The field at the times before the end at which an unsteady scene asks for it.
     pub frames: Vec<Frame>,
+    /// The field at the particles of a scene in free space.
+    pub particles: Option<ParticleField>,
 }
 
 /// Solves a scene as its plan says.
@@ -235,5 +237,5 @@ fn execute_in<const D: usize>(
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
     let report = Report { fallback, thin_layer, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
-    Ok(Solution { report, field, picture, frames })
+    Ok(Solution { report, field, picture, frames, particles: None })
 }

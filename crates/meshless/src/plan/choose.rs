@@ -214,7 +214,8 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(may_float, Stage::FloatingConstants, "no region is much stiffer than its neighbours");
     decide(true, Stage::Solve, "");
     decide(scene.time.is_some(), Stage::TimeSteps, "the scene is steady");
-    decide(exact || scene.output.vtu, Stage::Gradient, "neither exact solution nor field output asks for it");
+    let fields = exact || scene.output.vtu || scene.output.csv;
+    decide(fields, Stage::Gradient, "neither exact solution nor field output asks for it");
     decide(exact, Stage::Errors, "the scene has no exact solution");
     decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
     decide(true, Stage::Estimate, "");
