@@ -55,8 +55,14 @@ impl<const D: usize> Radial for Transformed<'_, D> {
 impl Octant {
     /// Divided by `all`, in the order that columns are multiplied in: for each wave number of the first direction (none where there is
     /// no second one), block of packs and wave number of the third, one number for each lane.
-    pub(super) fn packed<T: Real>(self, half: [usize; 3], packs: &Packs, all: f64) -> Vec<T> {
+    pub(super) fn packed<T: Real>(mut self, half: [usize; 3], packs: &Packs, all: f64) -> Vec<T> {
         let (lanes, flat, scale) = (packs.lanes(), half[1] == 1, self.scale / all);
+        if flat && lanes == 4 {
+            match T::same(self.values) {
+                Ok(values) => return interleaved(values, half[2], T::rounded(scale)),
+                Err(values) => self.values = values,
+            }
+        }
         let size = lanes * half[2];
         let planes = if flat { 1 } else { half[0] };
         let of: Vec<Vec<_>> = packs.of_blocks().map(|pack| packs.magnitudes(pack).collect()).collect();
@@ -79,6 +85,26 @@ impl Octant {
         });
         kernel
     }
+}
+
+/// Lines of `width` numbers, the numbers of four together, in the same memory; lines that there are not are zero.
+fn interleaved<T: Real>(mut lines: Vec<T>, width: usize, scale: T) -> Vec<T> {
+    let size = 4 * width;
+    lines.resize(lines.len().next_multiple_of(size), T::zero());
+    lines.par_chunks_exact_mut(size).for_each_init(
+        || vec![T::zero(); size],
+        |scratch, block| {
+            scratch.copy_from_slice(block);
+            let (a, rest) = scratch.split_at(width);
+            let (b, rest) = rest.split_at(width);
+            let (c, d) = rest.split_at(width);
+            let lines = a.iter().zip(b).zip(c).zip(d);
+            for (to, (((a, b), c), d)) in block.as_chunks_mut::<4>().0.iter_mut().zip(lines) {
+                *to = [*a * scale, *b * scale, *c * scale, *d * scale];
+            }
+        },
+    );
+    lines
 }
 
 /// A problem of which some directions are periods.

@@ -13,6 +13,9 @@ pub trait Real: FftNum + Default + Vectors {
     fn rounded(value: f64) -> Self;
     /// The same number.
     fn widened(self) -> f64;
+    /// Numbers of this type in the same memory, if they are those given.
+    #[doc(hidden)]
+    fn same(values: Vec<f64>) -> Result<Vec<Self>, Vec<f64>>;
     /// Mean of a source that is the round-off of its sum.
     #[doc(hidden)]
     fn epsilon() -> f64;
@@ -43,6 +46,9 @@ impl Real for f64 {
     fn rounded(value: f64) -> Self {
         value
     }
+    fn same(values: Vec<f64>) -> Result<Vec<Self>, Vec<f64>> {
+        Ok(values)
+    }
     fn epsilon() -> f64 {
         1e-13
     }
@@ -55,6 +61,9 @@ impl Real for f64 {
 impl Real for f32 {
     fn rounded(value: f64) -> Self {
         value as Self
+    }
+    fn same(values: Vec<f64>) -> Result<Vec<Self>, Vec<f64>> {
+        Err(values)
     }
     fn epsilon() -> f64 {
         1e-5

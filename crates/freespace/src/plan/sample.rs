@@ -88,7 +88,10 @@ impl Samples {
             let ratio = self.spacing[a] / unit;
             (0..shape[a]).map(|i| (i as f64 * ratio).powi(2)).collect()
         });
-        let mut values = vec![0.0; shape.iter().product()];
+        // With room for lines that make the last four complete.
+        let count: usize = shape.iter().product();
+        let mut values = vec![0.0; count + 3 * shape[2]];
+        values.truncate(count);
         values.par_chunks_mut(shape[2]).enumerate().for_each(|(line, out)| {
             let (i, j) = (line / shape[1], line % shape[1]);
             let (here, skip) = (squares[0][i] + squares[1][j], if square { i } else { 0 });
