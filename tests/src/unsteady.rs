@@ -90,6 +90,61 @@ pub fn driven_contact(tolerance: f64) -> String {
     )
 }
 
+/// What `growing` asks of a method.
+#[derive(Debug, Clone, Copy)]
+pub struct Growing {
+    /// The second region has another diffusivity; `None` for one region.
+    pub second: Option<f64>,
+    /// Jump of u at the interface.
+    pub jump: f64,
+    /// Factor of the square of x in the first region.
+    pub square: f64,
+}
+
+/// A field that is polynomial in space, linear or quadratic in the first region and linear in the second, times `1 + t`: sources,
+/// jumps and conditions of every kind depend on t. On a grid with the interface halfway between two columns of nodes.
+pub fn growing(Growing { second, jump, square }: Growing) -> String {
+    let at = 0.45;
+    let slope = 0.7;
+    let first = format!("(1 + 2*x + 0.5*y + {square}*x^2)");
+    let beyond = format!("({} + 0.5*y + {slope}*(x - {at}))", 1.0 + 2.0 * at + square * at * at + jump);
+    let eta = second.unwrap_or(1.0);
+    let value = match second {
+        Some(_) => format!("if(x < {at}, {first}, {beyond})"),
+        None => first.clone(),
+    };
+    // At the right end: u, and eta times its slope there.
+    let (end, flux) = match second {
+        Some(_) => (beyond.clone(), eta * slope),
+        None => (first.clone(), 2.0 + 2.0 * square),
+    };
+    let regions = format!(
+        "[[regions]]\nname = \"first\"\n{}diffusivity = 1\nsource = \"{first} - 2*{square}*(1 + t)\"\n\
+         exact = \"(1 + t)*{first}\"\n\n{}",
+        if second.is_some() { format!("level_set = \"x - {at}\"\n") } else { String::new() },
+        match second {
+            None => String::new(),
+            Some(_) => format!(
+                "[[regions]]\nname = \"second\"\ndiffusivity = {eta}\nsource = \"{beyond}\"\n\
+                 exact = \"(1 + t)*{beyond}\"\n\n[[interfaces]]\nbetween = [\"first\", \"second\"]\n{}\
+                 flux_jump = \"{}*(1 + t)\"\n\n",
+                if jump == 0.0 { String::new() } else { format!("jump = \"{jump}*(1 + t)\"\n") },
+                eta * slope - 2.0 - 2.0 * square * at,
+            ),
+        }
+    );
+    format!(
+        "title = \"Growing\"\ndimension = 2\n{}[points]\nspacing = 0.1\nlayout = \"grid\"\n\n{regions}\
+         [[boundaries]]\nface = \"right\"\nrobin = {{ a = 1, b = 1, g = \"(1 + t)*({end} + {flux})\" }}\n\n\
+         [[boundaries]]\nface = \"top\"\nneumann = \"0.5*(1 + t)\"\n\n\
+         [[boundaries]]\nface = \"bottom\"\nflux = \"if(x < {at}, -0.5, {})*(1 + t)\"\n\n\
+         [[boundaries]]\nface = \"left\"\ndirichlet = \"(1 + t)*{first}\"\n\n\
+         [time]\nend = 1.0\ntolerance = 1e-3\ninitial = \"{value}\"\n\n",
+        unit_box(2),
+        -0.5 * eta,
+    )
+}
+
 /// The smallest positive rate at which `eta_1 k_1 cot(k_1 a) + eta_2 k_2 cot(k_2 (1 - a))` vanishes, by bisection: the
 /// sum falls from infinity to minus infinity between 0 and the first pole of either term.
 fn composite_rate(a: f64, eta: [f64; 2]) -> f64 {

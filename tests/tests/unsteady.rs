@@ -7,7 +7,7 @@ use meshless::scene::{MethodName, Scene};
 use meshless::{Checkpoint, Error, Progress, Silent, Solution, execute_from};
 use meshless_tests::order::{observed, over_clouds};
 use meshless_tests::solve::{solve_scene, solve_with};
-use meshless_tests::unsteady::{ball, composite, driven, slab};
+use meshless_tests::unsteady::{Growing, ball, composite, driven, growing, slab};
 
 fn l2(solution: &Solution) -> f64 {
     solution.report.errors.as_ref().expect("the scene has an exact solution").l2
@@ -103,7 +103,7 @@ fn two_materials_in_contact() {
     }
 }
 
-/// All that step.
+/// All that step: with the jumps of the slope as unknowns modes grow that should decay, which is refused.
 const EVERY_METHOD: [MethodName; 8] = [
     MethodName::GfdmClassical,
     MethodName::GfdmConservative,
@@ -121,6 +121,33 @@ fn every_method_steps() {
         let error = l2(&solve_with(&slab(2, 0.05, 1e-4), method).expect("it can be solved"));
         assert!(error < 1e-2, "{method:?}: {error:e}");
     }
+}
+
+/// Sources, jumps and conditions of every kind that depend on t, for a field of the fitting space times a linear function of t: exact in
+/// space and in time.
+#[test]
+fn data_that_change_are_exact_for_every_method() {
+    use MethodName::*;
+    let jumps = |square| Growing { second: Some(10.0), jump: 0.3, square };
+    let table = [
+        // One operator for all: nothing may jump.
+        (GfdmClassical, Growing { second: None, jump: 0.0, square: 1.0 }),
+        (GfdmConservative, jumps(0.0)),
+        (GfdmHybrid, jumps(0.0)),
+        (GfdmPositive, jumps(0.0)),
+        (ImmersedInterface, jumps(1.0)),
+        // The second derivative across the interface is taken to be continuous in time.
+        (ParticleDifference, jumps(0.0)),
+        (Sharp, jumps(1.0)),
+        // A kink by a source alone is exact, one by diffusivities is smeared; u does not jump.
+        (SurfaceReaction, Growing { second: Some(1.0), jump: 0.0, square: 0.0 }),
+    ];
+    assert!(EVERY_METHOD.iter().all(|method| table.iter().any(|(name, _)| name == method)));
+    let errors = table.map(|(method, case)| {
+        let solution = solve_with(&growing(case), method).unwrap_or_else(|e| panic!("{method:?}: {e}"));
+        (method, l2(&solution))
+    });
+    assert!(errors.iter().all(|(_, error)| *error < 1e-9), "{errors:?}");
 }
 
 /// Stops when a time has been reached.

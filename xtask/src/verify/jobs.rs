@@ -1,9 +1,10 @@
 //! Many runs at once: one on every core, each of them on one thread.
 //!
-//! Runs are single-threaded so that their times can be compared: with each other, and between machines.
+//! Runs are single-threaded so that their times can be compared: with each other, and between machines. Large ones wait until their
+//! memory fits.
 
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
 
 use meshless::Error;
 use meshless::report::Report;
@@ -14,6 +15,33 @@ use super::study::{self, Key, Outcome};
 
 /// What is kept of a run.
 type Ended = (Row, Report);
+
+/// Memory that the runs side by side may take, in GB; a larger one runs alone.
+const MEMORY: f64 = 8.0;
+
+/// Lets runs begin while their memory fits.
+#[derive(Default)]
+struct Gate {
+    taken: Mutex<f64>,
+    freed: Condvar,
+}
+
+impl Gate {
+    fn within<T>(&self, memory: f64, work: impl FnOnce() -> T) -> T {
+        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        while *taken > 0.0 && memory > 0.0 && *taken + memory > MEMORY {
+            taken = self.freed.wait(taken).unwrap_or_else(PoisonError::into_inner);
+        }
+        *taken += memory;
+        drop(taken);
+        let result = work();
+        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        // Exactly nothing where nothing runs: what is taken was added and comes off in another order.
+        *taken = if *taken - memory > 1e-6 { *taken - memory } else { 0.0 };
+        self.freed.notify_all();
+        result
+    }
+}
 
 /// A run to be done.
 #[derive(Debug, Clone)]
@@ -39,15 +67,17 @@ impl Runner<'_> {
             }
         }
         let suite = self.suite;
-        let next = AtomicUsize::new(0);
+        let (next, gate) = (AtomicUsize::new(0), Gate::default());
         let results: Vec<OnceLock<Result<Ended, String>>> = wanted.iter().map(|_| OnceLock::new()).collect();
         let work = || {
             while let Some((job, result)) = {
                 let index = next.fetch_add(1, Ordering::Relaxed);
                 wanted.get(index).zip(results.get(index))
             } {
-                runner::announce(suite, &job.key);
-                let _ = result.set(job.run(suite));
+                gate.within(job.extra.memory, || {
+                    runner::announce(suite, &job.key);
+                    let _ = result.set(job.run(suite));
+                });
             }
         };
         std::thread::scope(|scope| {

@@ -34,6 +34,8 @@ pub(crate) struct Extra {
     pub(crate) estimate: bool,
     /// To this residual, by the plan's solver.
     pub(crate) residual: Option<f64>,
+    /// Memory that it takes, in GB, where that matters.
+    pub(crate) memory: f64,
 }
 
 /// Solves `problem`, the text of a scene without `[method]`, as `key` says.

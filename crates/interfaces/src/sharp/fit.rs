@@ -6,13 +6,16 @@ use super::basis::Jet;
 use super::maker::Maker;
 use super::parts::Parts;
 pub(super) use super::parts::Row;
-use super::stencil::Stencil;
+use super::stencil::{Heard, Stencil};
 
 /// `exp(-DECAY (r/R)^2)` is the weight of the value at a node.
 pub(super) const DECAY: f64 = 3.5;
 
 /// Weight of the rows of boundary conditions on the flux.
 const BOUNDARY_WEIGHT: f64 = 10.0;
+
+/// Least weight of a soft part beside a stiff one in units of the flux: it has to determine its own polynomial still.
+const LEAST_HEARD: f64 = 1e-3;
 
 /// Pivots below this part of the largest count as none (Golub & Van Loan, section 5.4).
 pub(super) const RANK_TOLERANCE: f64 = 1e-12;
@@ -211,6 +214,16 @@ impl<const D: usize> Fit<D> {
         let points = maker.problem.cloud.points();
         let center = &stencil.center;
         let nodes = stencil.nodes.len();
+        let conductance =
+            |j: usize| maker.problem.eta[j] * maker.unknowns.scale[maker.unknowns.part[j] as usize];
+        let stiffest = match stencil.heard {
+            Heard::UnitsOfFlux => stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(conductance(j as usize))),
+            Heard::All | Heard::OwnPart => 0.0,
+        };
+        let louder = |j: usize| match stiffest > 0.0 {
+            true => (conductance(j) / stiffest).max(LEAST_HEARD),
+            false => 1.0,
+        };
         self.given.resize(nodes, Given::default());
         let mut jet = std::mem::take(&mut self.parts.jet);
         for (row, (&j, &part)) in stencil.nodes.iter().zip(&stencil.part_of).enumerate() {
@@ -218,7 +231,7 @@ impl<const D: usize> Fit<D> {
             let z: [f64; D] = std::array::from_fn(|k| (points[j][k] - center[k]) / radius);
             let slopes = !maker.boundary_rows[j].is_empty();
             self.parts.evaluate(maker, part, &z, slopes, &mut jet);
-            let weight = (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
+            let weight = louder(j) * (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
             self.weights.push(weight);
             let mut given = Given::default();
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);

@@ -9,7 +9,7 @@ use super::interface::InterfacePoints;
 use super::params::{Form, SharpParams};
 use super::particular::Particular;
 use super::rate::{RateFit, Rates};
-use super::stencil::Stencil;
+use super::stencil::{Heard, Stencil};
 use super::thickness;
 use super::unknowns::Unknowns;
 use crate::parallel;
@@ -63,8 +63,10 @@ pub(super) struct Scratch<const D: usize> {
     pub(super) fit: Fit<D>,
     pub(super) combination: Combination,
     pub(super) rates: RateFit<D>,
-    /// Factors of the rates at the nodes of the stencil.
+    /// Factors of the rates at the nodes of the stencil; empty in steady scenes.
     pub(super) mass: Vec<f64>,
+    /// Whether they are those of the value at the node that was factored last.
+    has_mass: bool,
 }
 
 /// The row of a node: `w_i = sum_j h_j w_j + sum_K H_K C_K + known`, divided by what the own value leaves.
@@ -127,14 +129,10 @@ impl<'a, const D: usize> Maker<'a, D> {
     pub(super) fn factor(&self, i: usize, scratch: &mut Scratch<D>) -> Result<bool, MethodError> {
         let center = &self.problem.cloud.points()[i];
         let part = self.unknowns.part[i];
-        let determined = |combination: &Combination| 1.0 - combination.values[0] > LEAST_COMPLEMENT;
-        // In time a row that answers to a source by the wrong sign would make its node grow by itself.
-        let right = |combination: &Combination| determined(combination) && combination.unit_source > 0.0;
+        scratch.has_mass = false;
         let outcome = match &self.rates {
-            Some(_) => self
-                .factor_at(center, part, scratch, right)
-                .or_else(|| self.factor_at(center, part, scratch, determined)),
-            None => self.factor_at(center, part, scratch, determined),
+            Some(rates) => self.factor_in_time((center, part), rates, scratch),
+            None => self.factor_at((center, part, Heard::All), scratch, determined),
         };
         outcome.ok_or_else(|| MethodError::Unresolved {
             node: i,
@@ -144,24 +142,49 @@ impl<'a, const D: usize> Maker<'a, D> {
         })
     }
 
+    /// In time a row that answers to a source by the wrong sign would make its node grow by itself, and so may one to which the
+    /// rates of the nodes around it are more than its own. Of what fits may hear, the first is taken that leads to neither; then
+    /// the first with the right sign; then an equation without du/dt.
+    fn factor_in_time(
+        &self,
+        (center, part): (&[f64; D], u32),
+        rates: &Rates<D>,
+        scratch: &mut Scratch<D>,
+    ) -> Option<bool> {
+        let right = |combination: &Combination| determined(combination) && combination.unit_source > 0.0;
+        let outweighing = |heard: Heard, scratch: &mut Scratch<D>| {
+            let enlarged = self.factor_at((center, part, heard), scratch, right)?;
+            let Scratch { stencil, fit, rates: fitted, mass, .. } = scratch;
+            scratch.has_mass = rates.outweigh(self, stencil, fit, fitted, mass);
+            scratch.has_mass.then_some(enlarged)
+        };
+        let first = Heard::IN_TIME.into_iter().find_map(|heard| outweighing(heard, scratch));
+        first
+            .or_else(|| {
+                let mut heard = Heard::IN_TIME.into_iter();
+                heard.find_map(|heard| self.factor_at((center, part, heard), scratch, right))
+            })
+            .or_else(|| self.factor_at((center, part, Heard::All), scratch, determined))
+    }
+
     /// What a source of 1 adds to the value of node i, about.
     fn typical(&self, i: usize) -> f64 {
         let level = self.problem.eta[i] * self.unknowns.scale[self.unknowns.part[i] as usize];
         self.problem.cloud.spacing()[i].powi(2) / (4.0 * D as f64 * level)
     }
 
-    /// The same round any point of a part; `None` where no stencil determines the value or is accepted.
+    /// The same round any point of a part, by what is heard; `None` where no stencil determines the value or is accepted.
     pub(super) fn factor_at(
         &self,
-        center: &[f64; D],
-        own: u32,
+        (center, own, heard): (&[f64; D], u32, Heard),
         scratch: &mut Scratch<D>,
         accept: impl Fn(&Combination) -> bool,
     ) -> Option<bool> {
         let Scratch { stencil, fit, combination, .. } = scratch;
         let mut count = self.params.stencil_nodes(D);
         for attempt in 0..=ENLARGEMENTS {
-            stencil.gather(center, own, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
+            let at = (center, own, heard);
+            stencil.gather(at, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
             fit.factor(self, stencil);
             let remainder = fit.functional(stencil, None, combination);
             if remainder <= REPRODUCTION && accept(combination) {
@@ -188,11 +211,12 @@ impl<'a, const D: usize> Maker<'a, D> {
     /// The row of node i.
     pub(super) fn row(&self, i: usize, scratch: &mut Scratch<D>) -> Result<Row, MethodError> {
         let enlarged = self.factor(i, scratch)?;
-        let Scratch { stencil, fit, combination, rates, mass } = scratch;
-        mass.clear();
+        let Scratch { stencil, fit, combination, rates, mass, has_mass } = scratch;
         let mut known = combination.known;
         if let Some(polynomials) = &self.rates {
-            polynomials.of_value(self, stencil, fit, rates, mass);
+            if !*has_mass {
+                polynomials.of_value(self, stencil, fit, rates, mass);
+            }
             if combination.unit_source > 0.0 {
                 known -= rates.known;
             } else {
@@ -238,6 +262,11 @@ impl<'a, const D: usize> Maker<'a, D> {
             enlarged,
         })
     }
+}
+
+/// Whether the value of a node is what others predict.
+fn determined(combination: &Combination) -> bool {
+    1.0 - combination.values[0] > LEAST_COMPLEMENT
 }
 
 fn boundary_rows<const D: usize>(problem: &Problem<'_, D>) -> Result<Vec<Vec<BoundaryRow<D>>>, MethodError> {

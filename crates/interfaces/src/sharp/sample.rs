@@ -1,6 +1,7 @@
 //! Values and gradients of a solution from the fits that made the rows.
 
 use super::maker::{Maker, Scratch};
+use super::stencil::Heard;
 use crate::parallel;
 use crate::{MethodError, Sample, SystemSolution};
 
@@ -92,7 +93,7 @@ impl<const D: usize> Maker<'_, D> {
         scratch: &mut Scratch<D>,
     ) -> Option<Sample<D>> {
         let part = self.unknowns.part[owner.node];
-        self.factor_at(x, part, scratch, |_| true)?;
+        self.factor_at((x, part, Heard::All), scratch, |_| true)?;
         let value = self.evaluate(None, values, scratch) + self.constant(part, values);
         let gradient = std::array::from_fn(|axis| self.evaluate(Some(axis), values, scratch));
         Some(Sample { value, gradient, region: owner.region })
@@ -130,7 +131,7 @@ impl<const D: usize> Maker<'_, D> {
     ) -> Vec<Option<Sample<D>>> {
         let Some((_, Owner { node, .. })) = members.first() else { return Vec::new() };
         let (part, center) = (self.unknowns.part[*node], self.problem.cloud.points()[*node]);
-        let solved = self.factor_at(&center, part, scratch, |_| true).is_some()
+        let solved = self.factor_at((&center, part, Heard::All), scratch, |_| true).is_some()
             && scratch.fit.solve(
                 &scratch.stencil,
                 |j| values.w[j as usize],
@@ -153,7 +154,7 @@ impl<const D: usize> Maker<'_, D> {
 
     /// `s` times a functional of the own polynomial of the stencil that was factored last.
     fn evaluate(&self, axis: Option<usize>, values: &Values<'_>, scratch: &mut Scratch<D>) -> f64 {
-        let Scratch { stencil, fit, combination, rates, mass } = scratch;
+        let Scratch { stencil, fit, combination, rates, mass, .. } = scratch;
         fit.functional(stencil, axis, combination);
         let mut known = combination.known;
         if let (Some(polynomials), false) = (&self.rates, values.rates.is_empty()) {

@@ -9,6 +9,25 @@ use super::unknowns::Unknowns;
 /// Points of an interface that are looked at where none is within the stencil.
 const POINTS_ASKED: usize = 24;
 
+/// Which values a fit hears, and how loudly. Rows in time that answer to a source by the wrong sign do so by values beyond
+/// the interface, or by the interface itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Heard {
+    /// All of them alike.
+    #[default]
+    All,
+    /// Misfits in units of the flux: a node of a soft part that almost lies on a stiff one follows that, and is not carried
+    /// on from its own side.
+    UnitsOfFlux,
+    /// Those of the own part alone, without interfaces.
+    OwnPart,
+}
+
+impl Heard {
+    /// What is tried in time, in this order.
+    pub(super) const IN_TIME: [Self; 3] = [Self::All, Self::UnitsOfFlux, Self::OwnPart];
+}
+
 /// A stencil.
 #[derive(Debug, Clone)]
 pub(super) struct Stencil<const D: usize> {
@@ -22,6 +41,8 @@ pub(super) struct Stencil<const D: usize> {
     pub(super) part_of: Vec<usize>,
     /// Connected parts of regions, that of the center first.
     pub(super) parts: Vec<u32>,
+    /// What is heard of the nodes.
+    pub(super) heard: Heard,
     /// Points of interfaces between these parts, and the places of the parts of both sides.
     pub(super) points: Vec<(u32, [usize; 2])>,
     linked: Vec<bool>,
@@ -37,6 +58,7 @@ impl<const D: usize> Default for Stencil<D> {
             nodes: Vec::new(),
             part_of: Vec::new(),
             parts: Vec::new(),
+            heard: Heard::All,
             points: Vec::new(),
             linked: Vec::new(),
             found: Vec::new(),
@@ -49,17 +71,19 @@ impl<const D: usize> Stencil<D> {
     /// Gathers the stencil of `count` nodes round `center`, which lies in the part `own`.
     pub(super) fn gather(
         &mut self,
-        center: &[f64; D],
-        own: u32,
+        (center, own, heard): (&[f64; D], u32, Heard),
         count: usize,
         nodes: &CellList<'_, D>,
         unknowns: &Unknowns,
         interfaces: (&InterfacePoints<D>, &CellList<'_, D>),
     ) {
-        self.center = *center;
+        (self.center, self.heard) = (*center, heard);
         self.nodes.clear();
         self.nodes.extend(nodes.nearest(center, count, &mut self.found));
         self.radius = self.found.last().map_or(0.0, |last| last.0.sqrt());
+        if heard == Heard::OwnPart {
+            self.nodes.retain(|&j| unknowns.part[j as usize] == own);
+        }
         self.parts.clear();
         self.parts.push(own);
         self.part_of.clear();

@@ -9,6 +9,8 @@ mod contrast;
 mod diagnosis;
 mod extended;
 mod fields;
+mod flux;
+mod growth;
 mod immersed;
 mod invariance;
 mod jumps;

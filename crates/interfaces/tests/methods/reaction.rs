@@ -35,7 +35,7 @@ proptest! {
         ];
         let setup = Setup::<2>::generated(unit(), layout, 0.04, seed).with_support(2.9).regions(shapes, &[1.0; 3]);
         let problem = setup.problem();
-        for smoothing in [Smoothing::Convolution, Smoothing::Diffusion] {
+        for smoothing in [Smoothing::Convolution, Smoothing::Diffusion, Smoothing::Distance] {
             let chi = Indicators::new(&problem, smoothing, width).unwrap();
             let mixed: Vec<usize> = (0..setup.cloud.len()).filter(|&i| !chi.at(i).is_empty()).collect();
             prop_assert!(mixed.len() > 20);

@@ -64,8 +64,11 @@ const GHOSTS: [(&str, GhostsName); 5] = [
 ];
 
 /// Smoothings of indicators by name.
-const KERNELS: [(&str, KernelName); 2] =
-    [("convolution", KernelName::Convolution), ("diffusion", KernelName::Diffusion)];
+const KERNELS: [(&str, KernelName); 3] = [
+    ("convolution", KernelName::Convolution),
+    ("diffusion", KernelName::Diffusion),
+    ("distance", KernelName::Distance),
+];
 
 /// Diffusivities across an interface by name.
 const SIGMAS: [(&str, SigmaName); 3] =

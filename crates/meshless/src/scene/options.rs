@@ -51,6 +51,8 @@ pub enum KernelName {
     Convolution,
     /// `diffusion`
     Diffusion,
+    /// `distance`
+    Distance,
 }
 
 /// The diffusivity across an interface.

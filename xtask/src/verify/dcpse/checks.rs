@@ -38,9 +38,10 @@ fn smeared_dipole(spacing: f64) -> f64 {
 /// Least order of the shells with constrained ghosts.
 const SHELLS_ORDER: f64 = 2.3;
 
-/// What quadrature between nodes may add to it: `h / w` to the second power, and as much for the cloud. The tests of the
-/// method ask for the same.
-const QUADRATURE: f64 = 1.5;
+/// What quadrature between nodes may add to it. The resistance of a link of length L is a trapezoidal rule with the correction of its
+/// ends, whose next term is `L^4/720` times the difference of the third derivatives at both (Euler and Maclaurin). Those of a profile of
+/// width w and height 1 are at most 0.399 and 0.178 of `1/w^3`, and L at most 3.1 spacings, 2.07 w: 0.0147 w beside `w / sqrt(2 pi)`.
+const QUADRATURE: f64 = 1.037;
 
 fn key(case: &'static str, variant: Variant, level: usize, layout: u64) -> Key {
     Key { case, variant, jump: 0.0, level, seed: layout }
@@ -81,7 +82,7 @@ pub(super) fn dipole(runner: &Runner<'_>, claims: &mut Claims) {
             find(&runner.outcomes, &key(case, REACTION, 0, layout)).and_then(|o| o.row.err_linf),
             [0.0, smeared],
             [0.0, QUADRATURE * smeared],
-            "theory has the resistance between two nodes exactly; here it is a quadrature over the smeared profile",
+            "theory has the resistance between two nodes exactly; here it is a quadrature, whose next term is 3.7 % of it",
         );
         claims.at_most(
             case,

@@ -8,8 +8,10 @@
 //! No interface is ever located for that but by its foot near a node, and three regions may meet; the price is an error
 //! of first order where the diffusivity jumps, since the kink of u itself is smeared.
 
+mod diffusion;
 mod indicator;
 mod params;
+mod profile;
 
 use std::time::Instant;
 

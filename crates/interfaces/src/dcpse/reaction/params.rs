@@ -21,7 +21,7 @@ impl Default for ReactionParams {
     fn default() -> Self {
         Self {
             order: 2,
-            smoothing: Smoothing::Convolution,
+            smoothing: Smoothing::Distance,
             width: 1.5,
             sigma: Sigma::Harmonic,
             source: ReactionSource::Operator,
@@ -31,9 +31,14 @@ impl Default for ReactionParams {
 }
 
 impl ReactionParams {
-    /// As the paper has it: `sigma(x) lap u`, and sources `S_s delta_w`, with the sign put right.
+    /// As the paper has it: averages of labels, `sigma(x) lap u`, and sources `S_s delta_w`, with the sign put right.
     pub fn paper() -> Self {
-        Self { sigma: Sigma::Sharp, source: ReactionSource::Smoothed, ..Self::default() }
+        Self {
+            smoothing: Smoothing::Convolution,
+            sigma: Sigma::Sharp,
+            source: ReactionSource::Smoothed,
+            ..Self::default()
+        }
     }
 }
 
@@ -44,6 +49,9 @@ pub enum Smoothing {
     Convolution,
     /// Explicit steps of the diffusion equation (4.28).
     Diffusion,
+    /// A function of the distance from the shapes of the regions, with the resistance of the sharp interface where that is
+    /// curved.
+    Distance,
 }
 
 /// The diffusivity across an interface.

@@ -14,6 +14,7 @@ use crate::report::{Seconds, TimeReport};
 use crate::scene::{ExprField, Scene, TimeSpec};
 use crate::{Error, build};
 pub use checkpoint::Checkpoint;
+use checkpoint::Kept;
 use system::Heat;
 
 /// The field at a time before the end.
@@ -44,69 +45,98 @@ pub(super) fn solve_in<const D: usize>(
     let discrete = Discrete::<D>::build(&scene.at_time(0.0), plan, progress, &mut seconds)?;
     let heat = Heat::new(scene, plan, discrete, progress)?;
     progress.stage(Stage::TimeSteps);
-    let params = Params { tolerance: time.tolerance, whole: time.end, ..Params::default() };
-    let mut frames = Vec::new();
     let kept = checkpoint.map(|c| c.read(scene, plan, heat.unknowns())).transpose()?.flatten();
-    let mut stepper = match kept {
-        Some(kept) => {
-            frames = kept.frames;
-            Stepper::resume(heat, kept.state, params)
-        }
-        None => {
-            let start = initial(time, &heat)?;
-            Stepper::new(heat, 0.0, start, params).map_err(explain)?
-        }
-    };
-    let mut saved = Instant::now();
+    let (stepper, frames) = started(time, heat, kept)?;
+    let mut run = Run { scene, time, plan, checkpoint, stepper, frames, saved: Instant::now() };
     for &target in time.output.iter().chain([&time.end]) {
-        if target <= stepper_time(&stepper) {
-            continue;
-        }
-        while stepper_time(&stepper) < target {
-            let t = stepper_time(&stepper);
-            if !progress.proceed(t, time.end) {
-                checkpoint.map_or(Ok(()), |c| c.write(scene, plan, stepper.state(), &frames))?;
-                return Err(Error::Stopped { t });
-            }
-            stepper.step(target).map_err(explain)?;
-            if let Some(checkpoint) = checkpoint.filter(|c| saved.elapsed() >= c.every) {
-                checkpoint.write(scene, plan, stepper.state(), &frames)?;
-                saved = Instant::now();
-            }
-        }
-        if target < time.end {
-            frames.push(Frame { t: target, u: stepper.state().u.clone() });
-        }
+        run.advance_to(target, progress)?;
     }
-    let (heat, mut state) = stepper.into_parts();
-    let nodes = heat.nodes();
-    frames.iter_mut().for_each(|frame| frame.u.truncate(nodes));
-    let report = TimeReport {
-        end: time.end,
-        steps: state.steps,
-        rejected: state.rejected,
-        matrices: heat.matrices,
-        output: frames.iter().map(|frame| frame.t).collect(),
-    };
-    let (discrete, discretization, (info, split), spent) = heat.into_parts(time.end)?;
-    seconds.stencils += spent.stencils;
-    seconds.assembly = spent.assembly;
-    seconds.solve = spent.solve;
-    state.slope.truncate(nodes);
-    let system = SystemSolution {
-        extra: state.u.split_off(nodes),
-        u: state.u,
-        info,
-        floating_constants: 0,
-        up_to_constant: false,
-        split,
-        rates: Some(state.slope),
-    };
-    Ok(Solved { discrete, discretization, system, seconds, history: Some(History { report, frames }) })
+    run.finish(seconds)
 }
 
-fn stepper_time<const D: usize>(stepper: &Stepper<Heat<'_, D>>) -> f64 {
-    stepper.state().t
+/// A run at some time between its start and its end.
+struct Run<'a, const D: usize> {
+    scene: &'a Scene,
+    time: &'a TimeSpec,
+    plan: &'a Plan,
+    checkpoint: Option<&'a Checkpoint>,
+    stepper: Stepper<Heat<'a, D>>,
+    frames: Vec<Frame>,
+    /// When the checkpoint was written last.
+    saved: Instant,
+}
+
+/// Steps from the initial values, or from what a checkpoint holds.
+fn started<'a, const D: usize>(
+    time: &TimeSpec,
+    heat: Heat<'a, D>,
+    kept: Option<Kept>,
+) -> Result<(Stepper<Heat<'a, D>>, Vec<Frame>), Error> {
+    let params = Params { tolerance: time.tolerance, whole: time.end, ..Params::default() };
+    if let Some(kept) = kept {
+        return Ok((Stepper::resume(heat, kept.state, params), kept.frames));
+    }
+    let start = initial(time, &heat)?;
+    Ok((Stepper::new(heat, 0.0, start, params).map_err(explain)?, Vec::new()))
+}
+
+impl<const D: usize> Run<'_, D> {
+    /// Steps to an output time and keeps the field there; a time that is past was kept before.
+    fn advance_to(&mut self, target: f64, progress: &mut dyn Progress) -> Result<(), Error> {
+        if target <= self.stepper.state().t {
+            return Ok(());
+        }
+        while self.stepper.state().t < target {
+            let t = self.stepper.state().t;
+            if !progress.proceed(t, self.time.end) {
+                self.save()?;
+                return Err(Error::Stopped { t });
+            }
+            self.stepper.step(target).map_err(explain)?;
+            if self.checkpoint.is_some_and(|c| self.saved.elapsed() >= c.every) {
+                self.save()?;
+                self.saved = Instant::now();
+            }
+        }
+        if target < self.time.end {
+            self.frames.push(Frame { t: target, u: self.stepper.state().u.clone() });
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Result<(), Error> {
+        let Some(checkpoint) = self.checkpoint else { return Ok(()) };
+        checkpoint.write(self.scene, self.plan, self.stepper.state(), &self.frames)
+    }
+
+    /// The solution at the end and what is said of the way there.
+    fn finish(self, mut seconds: Seconds) -> Result<Solved<D>, Error> {
+        let (heat, mut state) = self.stepper.into_parts();
+        let (nodes, mut frames) = (heat.nodes(), self.frames);
+        frames.iter_mut().for_each(|frame| frame.u.truncate(nodes));
+        let report = TimeReport {
+            end: self.time.end,
+            steps: state.steps,
+            rejected: state.rejected,
+            matrices: heat.matrices,
+            output: frames.iter().map(|frame| frame.t).collect(),
+        };
+        let (discrete, discretization, (info, split), spent) = heat.into_parts(self.time.end)?;
+        seconds.stencils += spent.stencils;
+        seconds.assembly = spent.assembly;
+        seconds.solve = spent.solve;
+        state.slope.truncate(nodes);
+        let system = SystemSolution {
+            extra: state.u.split_off(nodes),
+            u: state.u,
+            info,
+            floating_constants: 0,
+            up_to_constant: false,
+            split,
+            rates: Some(state.slope),
+        };
+        Ok(Solved { discrete, discretization, system, seconds, history: Some(History { report, frames }) })
+    }
 }
 
 /// The initial values. Where u is prescribed, what is prescribed will count.

@@ -30,12 +30,18 @@ pub(super) fn immersed(scene: &Scene) -> ImmersedParams {
 }
 
 pub(super) fn reaction(scene: &Scene) -> ReactionParams {
-    let (options, chosen) = (&scene.method.options, ReactionParams::default());
+    let options = &scene.method.options;
+    // The paper's source is the gradient of its averages of labels.
+    let chosen = match options.reaction {
+        Some(ReactionName::Smoothed) => ReactionParams { sigma: Sigma::Harmonic, ..ReactionParams::paper() },
+        _ => ReactionParams::default(),
+    };
     ReactionParams {
         order: scene.method.order.unwrap_or(chosen.order),
         smoothing: options.kernel.map_or(chosen.smoothing, |name| match name {
             KernelName::Convolution => Smoothing::Convolution,
             KernelName::Diffusion => Smoothing::Diffusion,
+            KernelName::Distance => Smoothing::Distance,
         }),
         width: options.width.unwrap_or(chosen.width),
         sigma: options.sigma.map_or(chosen.sigma, |name| match name {
