@@ -1,7 +1,8 @@
 //! Floating clusters of random graphs, and chains whose solution is a sum of resistances.
 
 use meshless_sparse::{
-    Cluster, ComponentInfo, DEFAULT_THRESHOLD, DifferenceMatrix, SolverKind, SolverParams, Split, clusters,
+    Bordered, Cluster, ComponentInfo, DEFAULT_THRESHOLD, DifferenceMatrix, MatrixError, SolverKind,
+    SolverParams, Split, clusters,
 };
 use proptest::prelude::*;
 
@@ -76,6 +77,36 @@ fn coefficients_that_are_no_numbers_float_nowhere() {
 }
 
 /// Components with coefficients from 1e-12 to 1e12, some varying within, some fixed; and who touches whom.
+#[test]
+fn a_split_of_all_nodes_serves_those_that_are_left() {
+    // A line of which the first node is prescribed and the last four are stiff.
+    let eta = |i: usize| if i < 6 { 1.0 } else { 1e10 };
+    let rows = DifferenceMatrix::from_rows(10, |i, row| {
+        for j in [i.wrapping_sub(1), i + 1].into_iter().filter(|&j| j < 10) {
+            row.push(j, -2.0 / (1.0 / eta(i) + 1.0 / eta(j)));
+        }
+    })
+    .unwrap();
+    let component: Vec<u32> = (0..10).map(|i| u32::from(i >= 6)).collect();
+    let found = path(&[1.0, 1e10]);
+    let whole = Split::from_clusters(&rows, &component, 2, &found).unwrap();
+    let mut known = vec![None; 10];
+    known[0] = Some(0.0);
+    let reduced = rows.eliminate(&known, &[1.0; 10]).unwrap();
+    let split = whole.restricted(&reduced.map).unwrap();
+    assert_eq!(split, Split::from_clusters(&reduced.matrix, &component[1..], 2, &found).unwrap());
+    // Rows over w and C that say how they are split are the same system.
+    let applied = split.apply(&reduced.matrix, &reduced.rhs).unwrap();
+    let (columns, pinned) = (applied.columns().to_vec(), applied.pinned().to_vec());
+    let given = |pinned| {
+        Bordered::new(applied.matrix().clone(), columns.clone(), pinned, reduced.rhs.clone()).unwrap()
+    };
+    assert_eq!(given(pinned).with_split(split.clone()), Ok(applied.clone()));
+    assert!(matches!(given(vec![0]).with_split(split), Err(MatrixError::NoPin { cluster: 0, .. })));
+    assert!(matches!(whole.restricted(&[0, 1]), Err(MatrixError::NoPin { cluster: 0, .. })));
+    assert!(matches!(whole.restricted(&[10]), Err(MatrixError::RowOutOfRange { row: 10, nrows: 10 })));
+}
+
 fn graph() -> impl Strategy<Value = (Vec<ComponentInfo>, Vec<Vec<u32>>)> {
     (2usize..9).prop_flat_map(|n| {
         let component = (-12.0..12.0f64, 0.0..1.5f64, prop::bool::weighted(0.25));

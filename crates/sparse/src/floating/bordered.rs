@@ -95,10 +95,24 @@ impl Bordered {
         Ok(self)
     }
 
-    /// The same, with the split that gives the nodal values; its clusters are all the extra unknowns.
-    pub(super) fn with_split(mut self, split: Split) -> Self {
-        self.split = Some(split);
-        self
+    /// The same, with the split that tells what `w` and `c` make of nodal values, and its scales: multigrid is set up in nodal
+    /// values then. The extra unknowns are the constants of its clusters and nothing else. A method that makes rows over `w` and
+    /// `c` itself says so by this; its columns must be what a shift of all `w` of a cluster by `-1 / s` amounts to, up to rounding.
+    /// [`Split::apply`](crate::Split::apply) gives its own.
+    ///
+    /// # Errors
+    /// [`MatrixError::Length`], and [`MatrixError::NoPin`] where the split pins other nodes.
+    pub fn with_split(self, split: Split) -> Result<Self, MatrixError> {
+        MatrixError::check_length("pinned nodes of the split", split.pinned().len(), self.extra())?;
+        if let Some(cluster) = split.pinned().iter().zip(&self.pinned).position(|(a, b)| a != b) {
+            return Err(MatrixError::NoPin {
+                cluster,
+                reason: "another node than that of the split is pinned",
+            });
+        }
+        let scaled = self.with_scales(split.scales())?;
+        let split = (split.extra() > 0).then_some(split);
+        Ok(Self { split, ..scaled })
     }
 
     pub(super) fn split(&self) -> Option<&Split> {

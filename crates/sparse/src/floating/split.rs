@@ -124,6 +124,24 @@ impl Split {
         Self::new(component.to_vec(), groups, pinned.collect::<Result<_, _>>()?)
     }
 
+    /// The same for some of the nodes, in the order of `nodes`: those that are left where values are prescribed at the others.
+    ///
+    /// # Errors
+    /// [`MatrixError::RowOutOfRange`], and [`MatrixError::NoPin`] where the pinned node of a cluster is not among them.
+    pub fn restricted(&self, nodes: &[u32]) -> Result<Self, MatrixError> {
+        let mut place = vec![None; self.group.len()];
+        for (k, &node) in (0..).zip(nodes) {
+            let (row, nrows) = (node as usize, self.group.len());
+            *place.get_mut(row).ok_or(MatrixError::RowOutOfRange { row, nrows })? = Some(k);
+        }
+        let pin = |(cluster, &p): (usize, &u32)| {
+            place[p as usize]
+                .ok_or(MatrixError::NoPin { cluster, reason: "its node is not among the unknowns" })
+        };
+        let pinned = self.pinned.iter().enumerate().map(pin).collect::<Result<_, _>>()?;
+        Self::new(nodes.iter().map(|&node| self.group[node as usize]).collect(), self.groups.clone(), pinned)
+    }
+
     /// Number of clusters, and so of extra unknowns.
     #[must_use]
     pub fn extra(&self) -> usize {
@@ -142,7 +160,7 @@ impl Split {
         self.unknowns(i).scale
     }
 
-    fn scales(&self) -> Vec<f64> {
+    pub(super) fn scales(&self) -> Vec<f64> {
         (0..self.group.len()).map(|i| self.scale(i)).collect()
     }
 
@@ -160,8 +178,7 @@ impl Split {
     /// [`MatrixError::Length`], or an overflow of a scaled coefficient.
     pub fn apply(&self, matrix: &DifferenceMatrix, rhs: &[f64]) -> Result<Bordered, MatrixError> {
         Bordered::new(self.scaled(matrix)?, self.columns(matrix), self.pinned.clone(), rhs.to_vec())?
-            .with_scales(self.scales())
-            .map(|bordered| if self.extra() > 0 { bordered.with_split(self.clone()) } else { bordered })
+            .with_split(self.clone())
     }
 
     /// The same for a pure Neumann problem: `lambda` times `column` is added to the equations, as the last extra
