@@ -1,9 +1,29 @@
 //! Errors of the discretisations.
 
+use std::fmt;
+
 use meshless_cells::CellError;
 use meshless_sparse::SolveError;
 use meshless_stencils::StencilError;
 use thiserror::Error;
+
+/// A region in an error.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RegionName {
+    /// Its place in the list, from 0.
+    Place(u16),
+    /// Its name, where whoever made the list has put it in; see [`MethodError::named`].
+    Name(String),
+}
+
+impl fmt::Display for RegionName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Place(place) => write!(f, "{place} (from 0)"),
+            Self::Name(name) => write!(f, "\"{name}\""),
+        }
+    }
+}
 
 /// Why a problem could not be discretised or solved.
 #[derive(Debug, Error)]
@@ -41,8 +61,8 @@ pub enum MethodError {
          of about {spacing:.2e} there, or gfdm-hybrid"
     )]
     ThinLayer {
-        /// The region, by its place in the list.
-        region: u16,
+        /// The region.
+        region: RegionName,
         /// The middle of it there.
         position: Vec<f64>,
         /// How thin it is.
@@ -97,8 +117,8 @@ pub enum MethodError {
         node: usize,
         /// Its coordinates.
         position: Vec<f64>,
-        /// The region, by its place in the list.
-        region: u16,
+        /// The region.
+        region: RegionName,
     },
     /// Parts of the problem that do not fit together, or a diffusivity or source that is no number to compute with.
     #[error("the problem is not sound: {what}")]
@@ -140,6 +160,18 @@ pub enum MethodError {
 }
 
 impl MethodError {
+    /// The same with the name of its region, where there is one and its place in the list is all that is known of it.
+    #[must_use]
+    pub fn named(mut self, name: impl Fn(u16) -> Option<String>) -> Self {
+        if let Self::ThinLayer { region, .. } | Self::NoFoot { region, .. } = &mut self
+            && let RegionName::Place(place) = *region
+            && let Some(name) = name(place)
+        {
+            *region = RegionName::Name(name);
+        }
+        self
+    }
+
     pub(crate) fn stencil<const D: usize>(node: usize, x: &[f64; D], source: StencilError) -> Self {
         Self::Stencil { node, position: x.to_vec(), source }
     }

@@ -50,6 +50,7 @@ mod error;
 mod field;
 pub mod gfdm;
 mod gradient;
+mod gradient_rows;
 mod instances;
 mod local;
 mod method;
@@ -68,8 +69,9 @@ mod system;
 
 pub use adjacency::adjacent_pairs;
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
-pub use error::MethodError;
+pub use error::{MethodError, RegionName};
 pub use field::{Field, ScalarField};
+pub use gradient_rows::GradientRow;
 #[doc(hidden)]
 pub use instances::instances;
 pub use method::{Counts, Discretization, InterfacePoint, Method, RowKind, SplitRows};

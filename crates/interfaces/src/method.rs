@@ -2,7 +2,7 @@
 
 use meshless_sparse::{DifferenceMatrix, Split};
 
-use crate::{MethodError, Problem, Sample, SystemSolution, gradient};
+use crate::{GradientRow, MethodError, Problem, Sample, SystemSolution, gradient};
 
 /// A meshless discretisation of an elliptic interface problem.
 pub trait Method<const D: usize>: Sync {
@@ -63,6 +63,27 @@ pub struct Discretization {
     /// Unknowns beside the values of the nodes: jumps of the slope at points of interfaces. Their rows and right-hand
     /// sides come after those of the nodes.
     pub interface_points: Vec<InterfacePoint>,
+    /// The gradient at every node, where the method has kept it from what its rows are made of; see
+    /// [`Discretization::gradient`].
+    pub gradients: Option<Vec<GradientRow>>,
+}
+
+impl Discretization {
+    /// The gradient of a solution at every node, in its own region: from what was kept with the rows, else by the method.
+    ///
+    /// # Errors
+    /// Those of [`Method::gradient_of`].
+    pub fn gradient<const D: usize>(
+        &self,
+        method: &dyn Method<D>,
+        problem: &Problem<'_, D>,
+        solution: &SystemSolution,
+    ) -> Result<Vec<[f64; D]>, MethodError> {
+        match &self.gradients {
+            Some(rows) => Ok(rows.iter().map(|row| row.of(solution)).collect()),
+            None => method.gradient_of(problem, solution),
+        }
+    }
 }
 
 /// A point of an interface with an unknown of its own: the jump of the slope along the normal.
@@ -76,7 +97,7 @@ pub struct InterfacePoint {
     pub between: [u16; 2],
 }
 
-/// Rows that act on `w` and `C` of `u_i = sum_K sigma_K C_K + s_i w_i` in place of nodal values: methods whose stencils
+/// Rows that act on `w` and `C` of `u_i = offset_i + sum_K sigma_K C_K + s_i w_i` in place of nodal values: methods whose stencils
 /// weigh the sides of an interface against each other must know the scales before they make a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplitRows {
@@ -84,6 +105,8 @@ pub struct SplitRows {
     pub split: Split,
     /// Coefficients of every `C_K`: row, value.
     pub columns: Vec<Vec<(u32, f64)>>,
+    /// What is known of u beforehand, one number a node; the rows have it on their right-hand sides. Zero in time.
+    pub offsets: Vec<f64>,
 }
 
 /// How the row of a node was made.

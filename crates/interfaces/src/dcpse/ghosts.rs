@@ -9,7 +9,7 @@ use super::params::{Ghosts, ImmersedParams};
 use crate::method::RowKind;
 use crate::operator_rows::OperatorRows;
 use crate::parallel;
-use crate::{MethodError, Problem};
+use crate::{MethodError, Problem, RegionName};
 
 /// Degree of the fits on the boundary where ghosts are made by image points.
 const BOUNDARY_DEGREE: usize = 2;
@@ -138,7 +138,7 @@ fn across<const D: usize>(
 ) -> Result<Ghost, MethodError> {
     let x = &problem.cloud.points()[q];
     let Some((foot, other)) = foot(problem, q, own) else {
-        return Err(MethodError::NoFoot { node: q, position: x.to_vec(), region: own });
+        return Err(MethodError::NoFoot { node: q, position: x.to_vec(), region: RegionName::Place(own) });
     };
     maker.across(q, &foot, [own, other], scratch).map_err(|source| MethodError::stencil(q, x, source))
 }

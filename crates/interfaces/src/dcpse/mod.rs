@@ -67,6 +67,7 @@ impl<const D: usize> Method<D> for ImmersedInterface {
                 counts,
                 stencil_seconds,
                 interface_points: Vec::new(),
+                gradients: None,
             },
         )
     }

@@ -153,6 +153,7 @@ impl Parts {
             counts,
             stencil_seconds,
             interface_points: Vec::new(),
+            gradients: None,
         })
     }
 }

@@ -163,5 +163,6 @@ fn assemble<const D: usize>(
         counts,
         stencil_seconds,
         interface_points: Vec::new(),
+        gradients: None,
     })
 }

@@ -20,13 +20,22 @@ const LEAST_HEARD: f64 = 1e-3;
 /// Pivots below this part of the largest count as none (Golub & Van Loan, section 5.4).
 pub(super) const RANK_TOLERANCE: f64 = 1e-12;
 
+/// Constants of parts of a stencil on a right-hand side: `factor (c_of - c_less)`. In differences, so that what both have in common
+/// is not rounded: where parts are stiff, the factor is as large as they are.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Share {
+    pub(super) of: usize,
+    pub(super) less: Option<usize>,
+    pub(super) factor: f64,
+}
+
 /// What a row of the fit has on its right-hand side beside the value of a node: a number, what it would be for the
 /// source 1, and the constants of parts.
 #[derive(Debug, Clone, Copy, Default)]
 struct Given {
     known: f64,
     unit_source: f64,
-    constants: [(usize, f64); 2],
+    share: Share,
 }
 
 /// What a row does to the polynomial of a part at a point.
@@ -62,12 +71,21 @@ pub(super) struct Fit<const D: usize> {
 pub(super) struct Combination {
     /// Factors of the values `w` of the nodes of the stencil.
     pub(super) values: Vec<f64>,
-    /// Factors of the constants `c` of the parts of the stencil.
-    pub(super) constants: Vec<f64>,
+    /// The constants of the parts of the stencil, each pair once.
+    pub(super) constants: Vec<Share>,
     /// What the data add.
     pub(super) known: f64,
     /// What a source of 1 would add.
     pub(super) unit_source: f64,
+}
+
+impl Combination {
+    fn add(&mut self, share: Share) {
+        match self.constants.iter_mut().find(|s| (s.of, s.less) == (share.of, share.less)) {
+            Some(sum) => sum.factor += share.factor,
+            None => self.constants.push(share),
+        }
+    }
 }
 
 impl<const D: usize> Fit<D> {
@@ -98,7 +116,7 @@ impl<const D: usize> Fit<D> {
         let (column, size) = axis.map_or((0, 1.0), |axis| (1 + axis, 1.0 / stencil.radius));
         self.wanted[column] = size;
         let particular = self.parts.particular_at_center(0, axis);
-        self.combine(stencil, particular.map(|p| size * p), out) / size
+        self.combine(particular.map(|p| size * p), out) / size
     }
 
     /// Solves for all polynomials at once; false where the rows do not determine them all.
@@ -106,15 +124,16 @@ impl<const D: usize> Fit<D> {
         &mut self,
         stencil: &Stencil<D>,
         value: impl Fn(u32) -> f64,
-        constant: impl Fn(u32) -> f64,
+        constants: impl Fn(u32, Option<u32>) -> f64,
     ) -> bool {
         if self.qr.rank() < self.qr.columns() {
             return false;
         }
         self.factors.clear();
-        self.factors.extend(self.given.iter().map(|given| {
-            let constants = given.constants.iter().filter(|(_, c)| *c != 0.0);
-            given.known + constants.map(|&(part, c)| c * constant(stencil.parts[part])).sum::<f64>()
+        self.factors.extend(self.given.iter().map(|&Given { known, share, .. }| {
+            let part = |place: usize| stencil.parts[place];
+            let of = || share.factor * constants(part(share.of), share.less.map(part));
+            known + if share.factor == 0.0 { 0.0 } else { of() }
         }));
         let nodes = stencil.nodes.iter().zip(&self.weights);
         self.factors.iter_mut().zip(nodes).for_each(|(row, (&j, weight))| *row += weight * value(j));
@@ -139,20 +158,20 @@ impl<const D: usize> Fit<D> {
     }
 
     /// The combination of values and data that gives what is wanted. Returns what is left of its reproduction.
-    fn combine(&mut self, stencil: &Stencil<D>, particular: [f64; 2], out: &mut Combination) -> f64 {
+    fn combine(&mut self, particular: [f64; 2], out: &mut Combination) -> f64 {
         self.z.resize(self.qr.columns(), 0.0);
         self.factors.resize(self.given.len(), 0.0);
         let remainder = self.qr.least_norm(&self.wanted, &mut self.z, &mut self.factors);
         out.values.clear();
         out.values.extend(self.factors.iter().zip(&self.weights).map(|(f, w)| f * w));
         out.constants.clear();
-        out.constants.resize(stencil.parts.len(), 0.0);
         [out.known, out.unit_source] = particular;
         for (factor, given) in self.factors.iter().zip(&self.given) {
             out.known += factor * given.known;
             out.unit_source += factor * given.unit_source;
-            for &(part, coefficient) in given.constants.iter().filter(|(_, c)| *c != 0.0) {
-                out.constants[part] += factor * coefficient;
+            let share = Share { factor: factor * given.share.factor, ..given.share };
+            if share.factor != 0.0 {
+                out.add(share);
             }
         }
         remainder
@@ -248,8 +267,10 @@ impl<const D: usize> Fit<D> {
                     laplacian: 0.0,
                 };
                 let factor = BOUNDARY_WEIGHT * radius / (eta * scale);
-                let constants = [(part, -factor * condition.exchange), (part, 0.0)];
-                let mut given = Given { known: factor * condition.flux, unit_source: 0.0, constants };
+                let offset = maker.unknowns.offset[stencil.parts[part] as usize];
+                let known = factor * (condition.flux - condition.exchange * offset);
+                let share = Share { of: part, less: None, factor: -factor * condition.exchange };
+                let mut given = Given { known, unit_source: 0.0, share };
                 self.put(self.given.len(), part, (&z, &jet), &functional, &mut given);
                 self.given.push(given);
             }
@@ -290,14 +311,18 @@ impl<const D: usize> Fit<D> {
             let scales = places.map(|place| maker.unknowns.scale[stencil.parts[place] as usize]);
             let conductance: [f64; 2] = std::array::from_fn(|s| point.sides[s].eta * scales[s]);
             let largest = conductance[0].max(conductance[1]);
-            let constants = [(places[0], weight), (places[1], -weight)];
-            let mut value = Given { known: weight * point.value, unit_source: 0.0, constants };
+            // As w are compared: both sides may be stiff.
+            let of_value = weight / scales[0].max(scales[1]);
+            let [below, above] = places.map(|place| maker.unknowns.offset[stencil.parts[place] as usize]);
+            let known = of_value * (point.value - (above - below));
+            let share = Share { of: places[0], less: Some(places[1]), factor: of_value };
+            let mut value = Given { known, unit_source: 0.0, share };
             let mut flux = Given { known: weight * radius * point.flux / largest, ..Given::default() };
             let first = self.given.len();
             self.given.resize(first + 2, Given::default());
             for (s, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 self.parts.evaluate(maker, places[s], &z, true, &mut jet);
-                let row = Row::of_value(sign * weight * scales[s]);
+                let row = Row::of_value(sign * of_value * scales[s]);
                 self.put(first, places[s], (&z, &jet), &row, &mut value);
                 let strength = sign * weight * conductance[s] / largest;
                 let slope = Row { gradient: point.normal.map(|n| strength * n), ..Row::of_value(0.0) };

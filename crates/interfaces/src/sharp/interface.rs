@@ -2,7 +2,7 @@
 
 use meshless_neighbors::CellList;
 
-use super::unknowns::Unknowns;
+use super::unknowns::ConnectedParts;
 use crate::parallel;
 use crate::{Field, InterfaceJump, MethodError, Problem};
 
@@ -78,7 +78,7 @@ impl<const D: usize> InterfacePoints<D> {
     /// Projects the nodes near interfaces onto them, thins what results, and evaluates the data there.
     pub(super) fn sample(
         problem: &Problem<'_, D>,
-        unknowns: &Unknowns,
+        parts: &ConnectedParts,
         nodes: &CellList<'_, D>,
     ) -> Result<Self, MethodError> {
         let tolerance = ON_BOUNDARY * problem.domain.bounds().diameter();
@@ -88,7 +88,7 @@ impl<const D: usize> InterfacePoints<D> {
         let found = parallel::try_map_with(kept.len(), Vec::new, |found, k| {
             let candidate = &candidates[kept[k]];
             Ok::<_, MethodError>(
-                point(problem, unknowns, nodes, candidate, found)?.map(|point| (point, candidate.at)),
+                point(problem, parts, nodes, candidate, found)?.map(|point| (point, candidate.at)),
             )
         })?;
         let (points, places) = found.into_iter().flatten().unzip();
@@ -140,7 +140,7 @@ fn thin<const D: usize>(candidates: &[Candidate<D>]) -> Result<Vec<usize>, Metho
 /// What holds at a candidate; `None` where no node of one of its regions is near.
 fn point<const D: usize>(
     problem: &Problem<'_, D>,
-    unknowns: &Unknowns,
+    parts: &ConnectedParts,
     nodes: &CellList<'_, D>,
     candidate: &Candidate<D>,
     found: &mut Vec<(f64, u32)>,
@@ -149,7 +149,7 @@ fn point<const D: usize>(
     let mut part_of = |label: u16| {
         NODES_ASKED.iter().find_map(|&count| {
             let of_label = |&j: &u32| problem.labels[j as usize] == label;
-            nodes.nearest(at, count, found).find(of_label).map(|j| unknowns.part[j as usize])
+            nodes.nearest(at, count, found).find(of_label).map(|j| parts.of_node[j as usize])
         })
     };
     let (Some(first), Some(second)) = (part_of(labels[0]), part_of(labels[1])) else { return Ok(None) };

@@ -13,7 +13,7 @@ use super::stencil::{Heard, Stencil};
 use super::thickness;
 use super::unknowns::Unknowns;
 use crate::parallel;
-use crate::{Condition, Material, MethodError, Problem};
+use crate::{Condition, GradientRow, Material, MethodError, Problem};
 
 /// What is left of the reproduction of a value before a larger stencil is tried.
 const REPRODUCTION: f64 = 1e-6;
@@ -84,6 +84,8 @@ pub(super) struct Row {
     pub(super) mass: Vec<f64>,
     pub(super) crosses: bool,
     pub(super) enlarged: bool,
+    /// The gradient at the node, where it is kept.
+    pub(super) gradient: Option<GradientRow>,
 }
 
 impl<'a, const D: usize> Maker<'a, D> {
@@ -241,11 +243,13 @@ impl<'a, const D: usize> Maker<'a, D> {
             factor * (1.0 - combination.values[0]) + coefficients.iter().sum::<f64>()
         };
         let mut constants: Vec<(u32, f64)> = Vec::new();
-        for (&part, h) in stencil.parts.iter().zip(&combination.constants) {
-            for &(cluster, sigma) in &self.unknowns.chain[part as usize] {
+        for share in &combination.constants {
+            let part = |place: usize| stencil.parts[place];
+            for (cluster, sigma) in self.unknowns.shares(part(share.of), share.less.map(part)) {
+                let value = -factor * sigma * share.factor;
                 match constants.iter_mut().find(|(c, _)| *c == cluster) {
-                    Some((_, sum)) => *sum -= factor * sigma * h,
-                    None => constants.push((cluster, -factor * sigma * h)),
+                    Some((_, sum)) => *sum += value,
+                    None => constants.push((cluster, value)),
                 }
             }
         }
@@ -260,6 +264,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             mass: mass.iter().map(|m| factor * m).collect(),
             crosses: stencil.parts.len() > 1,
             enlarged,
+            gradient: self.keeps_gradients().then(|| self.gradient_row(scratch)),
         })
     }
 }

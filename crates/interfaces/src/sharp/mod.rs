@@ -29,14 +29,14 @@ use meshless_sparse::DifferenceMatrix;
 
 use crate::method::{Counts, Discretization, Method, RowKind, SplitRows};
 use crate::parallel;
-use crate::{MethodError, Problem, Sample, SystemSolution};
+use crate::{GradientRow, MethodError, Problem, Sample, SystemSolution};
 use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
 pub use params::{Form, MAX_ORDER, SharpParams};
 use sample::Values;
 pub use thickness::RESOLVED;
 pub use thin::{resolving_spacing, suspect, thinnest, unresolved, unseen};
-use unknowns::Unknowns;
+use unknowns::{ConnectedParts, Unknowns};
 
 /// The sharp method.
 #[derive(Debug, Clone, Copy, Default)]
@@ -74,8 +74,10 @@ impl Sharp {
         self.check(problem)?;
         let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
         let nodes = CellList::new(problem.cloud.points(), 3.0 * widest)?;
-        let unknowns = Unknowns::find(problem)?;
-        let interfaces = InterfacePoints::sample(problem, &unknowns, &nodes)?;
+        let parts = ConnectedParts::find(problem)?;
+        let interfaces = InterfacePoints::sample(problem, &parts, &nodes)?;
+        // In time jumps change, and rates have none of the offsets.
+        let unknowns = Unknowns::find(problem, parts, &interfaces, !self.params.unsteady);
         work(&Maker::new(problem, self.params, &unknowns, &nodes, &interfaces)?)
     }
 }
@@ -88,10 +90,13 @@ impl<const D: usize> Method<D> for Sharp {
         thin::check(problem)?;
         self.with_maker(problem, |maker| {
             let nodes: Vec<usize> = (0..known.len()).filter(|&i| known[i].is_none()).collect();
-            let rows = parallel::try_map_with(nodes.len(), Scratch::default, |scratch, k| {
+            let mut rows = parallel::try_map_with(nodes.len(), Scratch::default, |scratch, k| {
                 maker.row(nodes[k], scratch)
             })?;
-            assemble(problem, maker.unknowns, &known, &rows, start.elapsed().as_secs_f64())
+            let gradients =
+                maker.keeps_gradients().then(|| gradients(maker, &known, &mut rows)).transpose()?;
+            let seconds = start.elapsed().as_secs_f64();
+            Ok(Discretization { gradients, ..assemble(problem, maker.unknowns, &known, &rows, seconds)? })
         })
     }
 
@@ -122,6 +127,20 @@ impl<const D: usize> Method<D> for Sharp {
         let values = Values::new(solution);
         self.with_maker(problem, |maker| Ok(Some(maker.samples(points, &values))))
     }
+}
+
+/// The gradients that rows were made with, and those at prescribed values.
+fn gradients<const D: usize>(
+    maker: &Maker<'_, D>,
+    known: &[Option<f64>],
+    rows: &mut [Row],
+) -> Result<Vec<GradientRow>, MethodError> {
+    let prescribed: Vec<usize> = (0..known.len()).filter(|&i| known[i].is_some()).collect();
+    let others = at_all_nodes(prescribed.len(), |k, scratch| maker.gradient_at(prescribed[k], scratch))?;
+    let mut all = vec![GradientRow::default(); known.len()];
+    prescribed.into_iter().zip(others).for_each(|(i, row)| all[i] = row);
+    rows.iter_mut().for_each(|row| all[row.node] = row.gradient.take().unwrap_or_default());
+    Ok(all)
 }
 
 /// Which node an error names must not depend on which thread was faster.
@@ -173,7 +192,9 @@ fn assemble<const D: usize>(
         for row in rows {
             row.constants.iter().for_each(|&(k, value)| columns[k as usize].push((row.node as u32, value)));
         }
-        Some(SplitRows { split: unknowns.split(&matrix)?, columns })
+        let offset = |&part: &u32| unknowns.offset[part as usize];
+        let offsets = unknowns.part.iter().map(offset).collect();
+        Some(SplitRows { split: unknowns.split(&matrix)?, columns, offsets })
     };
     let counts = Counts {
         stencils: rows.len(),
@@ -192,5 +213,6 @@ fn assemble<const D: usize>(
         counts,
         stencil_seconds,
         interface_points: Vec::new(),
+        gradients: None,
     })
 }

@@ -50,6 +50,9 @@ pub struct SharpParams {
     pub source_degree: Option<usize>,
     /// The equation has a `du/dt`: rows get a mass.
     pub unsteady: bool,
+    /// Keep the gradients at the nodes with the rows, from the same factors: else every stencil is factored again where they are
+    /// wanted. They take D numbers for each node of a stencil. In time they see the rates, and are not kept.
+    pub keep_gradients: bool,
 }
 
 impl Default for SharpParams {
@@ -63,6 +66,7 @@ impl Default for SharpParams {
             form: Form::Trefftz,
             source_degree: None,
             unsteady: false,
+            keep_gradients: false,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Values and gradients of a solution from the fits that made the rows.
 
+use super::fit::Share;
 use super::maker::{Maker, Scratch};
 use super::stencil::Heard;
 use crate::parallel;
-use crate::{MethodError, Sample, SystemSolution};
+use crate::{GradientRow, MethodError, Sample, SystemSolution};
 
 /// A solution in the unknowns of the fits.
 pub(super) struct Values<'a> {
@@ -32,10 +33,15 @@ impl<'a> Values<'a> {
 }
 
 impl<const D: usize> Maker<'_, D> {
-    /// The constant `c` of a part.
+    /// The constant `c` of a part, less that of another, without their offsets.
+    fn constants(&self, of: u32, less: Option<u32>, values: &Values<'_>) -> f64 {
+        let constant = |k: u32| values.constants.get(k as usize).copied().unwrap_or(0.0);
+        self.unknowns.shares(of, less).map(|(k, sigma)| sigma * constant(k)).sum()
+    }
+
+    /// What is added to `s w` in a part.
     fn constant(&self, part: u32, values: &Values<'_>) -> f64 {
-        let chain = &self.unknowns.chain[part as usize];
-        chain.iter().map(|&(k, sigma)| sigma * values.constants.get(k as usize).copied().unwrap_or(0.0)).sum()
+        self.unknowns.offset[part as usize] + self.constants(part, None, values)
     }
 
     /// The gradient of the own polynomial at node i.
@@ -47,6 +53,36 @@ impl<const D: usize> Maker<'_, D> {
     ) -> Result<[f64; D], MethodError> {
         self.factor(i, scratch)?;
         Ok(std::array::from_fn(|axis| self.evaluate(Some(axis), values, scratch)))
+    }
+
+    /// Whether gradients are kept with the rows.
+    pub(super) fn keeps_gradients(&self) -> bool {
+        self.params.keep_gradients && self.rates.is_none()
+    }
+
+    /// The gradient at node i, in terms of the unknowns.
+    pub(super) fn gradient_at(&self, i: usize, scratch: &mut Scratch<D>) -> Result<GradientRow, MethodError> {
+        self.factor(i, scratch)?;
+        Ok(self.gradient_row(scratch))
+    }
+
+    /// The gradient of the own polynomial of the stencil that was factored last, in terms of the unknowns.
+    pub(super) fn gradient_row(&self, scratch: &mut Scratch<D>) -> GradientRow {
+        let Scratch { stencil, fit, combination, .. } = scratch;
+        let scale = self.unknowns.scale[stencil.parts[0] as usize];
+        let mut row = GradientRow { nodes: stencil.nodes.clone(), ..GradientRow::default() };
+        row.factors.reserve_exact(D * row.nodes.len());
+        for axis in 0..D {
+            fit.functional(stencil, Some(axis), combination);
+            row.factors.extend(combination.values.iter().map(|h| scale * h));
+            row.known.push(scale * combination.known);
+            for share in &combination.constants {
+                let part = |place: usize| stencil.parts[place];
+                let shares = self.unknowns.shares(part(share.of), share.less.map(part));
+                row.constants.extend(shares.map(|(k, sigma)| (axis, k, scale * sigma * share.factor)));
+            }
+        }
+        row
     }
 
     /// The gradient at node i for nodal values of any field.
@@ -67,12 +103,14 @@ impl<const D: usize> Maker<'_, D> {
                 first.map_or(0.0, |place| u[stencil.nodes[place] as usize])
             })
             .collect();
+        let constant = |place: usize| reference[place] - self.unknowns.offset[stencil.parts[place] as usize];
         let scale = |part: usize| self.unknowns.scale[stencil.parts[part] as usize];
         Ok(std::array::from_fn(|axis| {
             fit.functional(stencil, Some(axis), combination);
             let nodes = stencil.nodes.iter().zip(&stencil.part_of).zip(&combination.values);
             let differences = nodes.map(|((&j, &p), h)| h * (u[j as usize] - reference[p]) / scale(p));
-            let constants = combination.constants.iter().zip(&reference).map(|(h, c)| h * c);
+            let shares = combination.constants.iter();
+            let constants = shares.map(|s| s.factor * (constant(s.of) - s.less.map_or(0.0, constant)));
             scale(0) * (combination.known + differences.sum::<f64>() + constants.sum::<f64>())
         }))
     }
@@ -135,7 +173,7 @@ impl<const D: usize> Maker<'_, D> {
             && scratch.fit.solve(
                 &scratch.stencil,
                 |j| values.w[j as usize],
-                |part| self.constant(part, values),
+                |of, less| self.constants(of, less, values),
             );
         let (scale, constant) = (self.unknowns.scale[part as usize], self.constant(part, values));
         let radius = scratch.stencil.radius;
@@ -164,8 +202,9 @@ impl<const D: usize> Maker<'_, D> {
             known -= rates.known;
         }
         let nodes = stencil.nodes.iter().zip(&combination.values).map(|(&j, h)| h * values.w[j as usize]);
-        let parts = stencil.parts.iter().zip(&combination.constants);
-        let constants = parts.map(|(&part, h)| h * self.constant(part, values));
+        let part = |place: usize| stencil.parts[place];
+        let of_share = |s: &Share| s.factor * self.constants(part(s.of), s.less.map(part), values);
+        let constants = combination.constants.iter().map(of_share);
         let scale = self.unknowns.scale[stencil.parts[0] as usize];
         scale * (known + nodes.sum::<f64>() + constants.sum::<f64>())
     }

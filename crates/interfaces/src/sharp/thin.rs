@@ -4,7 +4,7 @@ use meshless_geometry::ThinLayer;
 use meshless_neighbors::CellList;
 
 use super::thickness::RESOLVED;
-use crate::{MethodError, Problem, adjacent_pairs};
+use crate::{MethodError, Problem, RegionName, adjacent_pairs};
 
 /// How near to the middle of a layer nodes are that may see through it, in spacings.
 const NEAR: f64 = 1.5;
@@ -109,7 +109,7 @@ pub fn suspect<const D: usize>(problem: &Problem<'_, D>) -> Option<ThinLayer<D>>
 /// The error where a layer keeps a problem from being solved.
 pub fn unresolved<const D: usize>(layer: &ThinLayer<D>) -> MethodError {
     MethodError::ThinLayer {
-        region: layer.region,
+        region: RegionName::Place(layer.region),
         position: layer.at.to_vec(),
         thickness: layer.thickness,
         spacing: resolving_spacing(layer),

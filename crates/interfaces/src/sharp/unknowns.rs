@@ -1,11 +1,29 @@
-//! The change of unknowns `u = sum_K sigma_K C_K + s w`, found from the graph of the regions.
+//! The change of unknowns `u = offset + sum_K sigma_K C_K + s w`, found from the graph of the regions.
 
+use meshless_geometry::RegionGraph;
 use meshless_sparse::{DifferenceMatrix, Split};
 
-use crate::system::FloatingParts;
+use super::interface::InterfacePoints;
+use crate::system::{FloatingParts, region_graph};
 use crate::{MethodError, Problem};
 
-/// Scale and constants of every connected part of a region.
+/// The connected parts of the regions.
+#[derive(Debug)]
+pub(super) struct ConnectedParts {
+    graph: RegionGraph,
+    /// Part of every node.
+    pub(super) of_node: Vec<u32>,
+}
+
+impl ConnectedParts {
+    pub(super) fn find<const D: usize>(problem: &Problem<'_, D>) -> Result<Self, MethodError> {
+        let graph = region_graph(problem)?;
+        let of_node = (0..problem.cloud.len() as u32).map(|i| graph.component_of(i)).collect();
+        Ok(Self { graph, of_node })
+    }
+}
+
+/// Scale, constants and offset of every connected part of a region.
 #[derive(Debug)]
 pub(super) struct Unknowns {
     parts: FloatingParts,
@@ -13,17 +31,36 @@ pub(super) struct Unknowns {
     pub(super) part: Vec<u32>,
     /// Scale `s` of every part.
     pub(super) scale: Vec<f64>,
+    /// What is known of its constant: where u jumps between parts that float together, it jumps by so much on the average. Divided
+    /// by a small `s`, in `w`, the jump would take the digits of the flux.
+    pub(super) offset: Vec<f64>,
     /// Label of every part.
     pub(super) label: Vec<u16>,
     /// The constants of every part: cluster, factor.
-    pub(super) chain: Vec<Vec<(u32, f64)>>,
+    chain: Vec<Vec<(u32, f64)>>,
 }
 
 impl Unknowns {
-    pub(super) fn find<const D: usize>(problem: &Problem<'_, D>) -> Result<Self, MethodError> {
-        let parts = FloatingParts::find(problem)?;
-        let count = parts.graph.components().len();
-        let part = (0..problem.cloud.len() as u32).map(|i| parts.graph.component_of(i)).collect();
+    /// Parts touch where an interface has a point between them, as the rows of the fits join them there and nowhere else. Nodes
+    /// may be neighbours across a thin layer without that.
+    pub(super) fn find<const D: usize>(
+        problem: &Problem<'_, D>,
+        connected: ConnectedParts,
+        interfaces: &InterfacePoints<D>,
+        with_offsets: bool,
+    ) -> Self {
+        let ConnectedParts { graph, of_node: part } = connected;
+        let count = graph.components().len();
+        let mut touching = vec![Vec::new(); count];
+        for [a, b] in interfaces.points.iter().map(|point| point.sides.each_ref().map(|side| side.part)) {
+            touching[a as usize].push(b);
+            touching[b as usize].push(a);
+        }
+        touching.iter_mut().for_each(|list| {
+            list.sort_unstable();
+            list.dedup();
+        });
+        let parts = FloatingParts::find(problem, graph, touching);
         let label = parts.graph.components().iter().map(|c| c.label).collect();
         let mut scale = vec![1.0; count];
         let mut chain = vec![Vec::new(); count];
@@ -37,7 +74,9 @@ impl Unknowns {
                 scale[own as usize] = s;
             }
         }
-        Ok(Self { parts, part, scale, label, chain })
+        let floats = |part: u32| with_offsets && !chain[part as usize].is_empty();
+        let offset = offsets(count, interfaces, floats);
+        Self { parts, part, scale, offset, label, chain }
     }
 
     /// Constants that are unknowns of their own.
@@ -45,8 +84,56 @@ impl Unknowns {
         self.parts.clusters.len()
     }
 
+    /// What the constants add to u in one part, less what they add in another: constant, factor. Those that both have alike do
+    /// not show.
+    pub(super) fn shares(&self, of: u32, less: Option<u32>) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let own = self.chain[of as usize].as_slice();
+        let other = less.map_or(&[][..], |less| self.chain[less as usize].as_slice());
+        let factor = |chain: &[(u32, f64)], k: u32| chain.iter().find(|c| c.0 == k).map_or(0.0, |c| c.1);
+        let of_own = own.iter().map(move |&(k, sigma)| (k, sigma - factor(other, k)));
+        let beyond = other.iter().filter(move |(k, _)| own.iter().all(|(j, _)| j != k));
+        of_own.chain(beyond.map(|&(k, sigma)| (k, -sigma))).filter(|(_, sigma)| *sigma != 0.0)
+    }
+
     /// The change of unknowns for a matrix whose rows act on `w`, over all nodes.
     pub(super) fn split(&self, rows: &DifferenceMatrix) -> Result<Split, MethodError> {
         Ok(Split::from_clusters(rows, &self.part, self.scale.len(), &self.parts.clusters)?)
     }
+}
+
+/// The mean jumps of u, added up along ways from part to part among those that float, from the first of each such group on.
+fn offsets<const D: usize>(
+    count: usize,
+    interfaces: &InterfacePoints<D>,
+    floats: impl Fn(u32) -> bool,
+) -> Vec<f64> {
+    let mut between: Vec<([u32; 2], f64, f64)> = Vec::new();
+    for point in &interfaces.points {
+        let pair = point.sides.each_ref().map(|side| side.part);
+        if pair[0] == pair[1] || !pair.iter().all(|&part| floats(part)) {
+            continue;
+        }
+        match between.iter_mut().find(|(of, ..)| *of == pair) {
+            Some((_, sum, points)) => (*sum, *points) = (*sum + point.value, *points + 1.0),
+            None => between.push((pair, point.value, 1.0)),
+        }
+    }
+    let mut offset: Vec<Option<f64>> = vec![None; count];
+    for start in 0..count {
+        offset[start].get_or_insert(0.0);
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for &([a, b], sum, points) in &between {
+                let jump = sum / points;
+                match (offset[a as usize], offset[b as usize]) {
+                    (Some(known), None) => offset[b as usize] = Some(known + jump),
+                    (None, Some(known)) => offset[a as usize] = Some(known - jump),
+                    _ => continue,
+                }
+                grown = true;
+            }
+        }
+    }
+    offset.into_iter().map(|known| known.unwrap_or(0.0)).collect()
 }

@@ -32,18 +32,23 @@ pub(crate) struct FloatingParts {
 }
 
 impl FloatingParts {
-    pub(crate) fn find<const D: usize>(problem: &Problem<'_, D>) -> Result<Self, MethodError> {
-        let graph = region_graph(problem)?;
+    /// What floats where the parts of a graph touch as `touching` says, part by part.
+    pub(crate) fn find<const D: usize>(
+        problem: &Problem<'_, D>,
+        graph: RegionGraph,
+        touching: Vec<Vec<u32>>,
+    ) -> Self {
         if !levels_differ(problem) {
-            return Ok(Self { graph, clusters: Vec::new() });
+            return Self { graph, clusters: Vec::new() };
         }
-        let (components, adjacency) = picture(problem, &graph);
+        let (components, adjacency) = with_surroundings(problem, &graph, touching);
         let clusters = clusters(&components, &adjacency, DEFAULT_THRESHOLD);
-        Ok(Self { graph, clusters })
+        Self { graph, clusters }
     }
 }
 
-fn region_graph<const D: usize>(problem: &Problem<'_, D>) -> Result<RegionGraph, MethodError> {
+/// The connected parts of the regions of a problem, and which of them have nodes that are neighbours.
+pub(crate) fn region_graph<const D: usize>(problem: &Problem<'_, D>) -> Result<RegionGraph, MethodError> {
     let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
     Ok(RegionGraph::new(problem.cloud, problem.labels, &pairs)?)
 }
@@ -54,8 +59,16 @@ fn picture<const D: usize>(
     graph: &RegionGraph,
 ) -> (Vec<ComponentInfo>, Vec<Vec<u32>>) {
     let count = graph.components().len() as u32;
+    with_surroundings(problem, graph, (0..count).map(|c| graph.touching(c).to_vec()).collect())
+}
+
+/// The same where who touches whom is known, with what is outside of the domain.
+fn with_surroundings<const D: usize>(
+    problem: &Problem<'_, D>,
+    graph: &RegionGraph,
+    mut adjacency: Vec<Vec<u32>>,
+) -> (Vec<ComponentInfo>, Vec<Vec<u32>>) {
     let mut components = component_infos(problem, graph);
-    let mut adjacency: Vec<Vec<u32>> = (0..count).map(|c| graph.touching(c).to_vec()).collect();
     add_surroundings(problem, graph, &mut components, &mut adjacency);
     (components, adjacency)
 }

@@ -23,6 +23,7 @@ pub(super) fn solve<const D: usize>(
     }
     let w = reduced.expand(&solved.values, &problem.dirichlet())?;
     let mut u = constants.split.recover(&w, &solved.extra)?;
+    u.iter_mut().zip(&constants.offsets).for_each(|(u, offset)| *u += offset);
     if up_to_constant {
         super::center(&mut u, &discretization.volumes);
     }
@@ -47,26 +48,44 @@ pub(super) fn bordered<const D: usize>(
 ) -> Result<(Bordered, Reduced), MethodError> {
     let known = problem.dirichlet();
     let reduced = discretization.rows.eliminate(&known, &discretization.rhs)?;
-    let mut unknown_of = vec![None; known.len()];
-    (0..).zip(&reduced.map).for_each(|(k, &node)| unknown_of[node as usize] = Some(k));
-    let of = |node: u32| unknown_of[node as usize];
-    let columns = constants
-        .columns
-        .iter()
-        .map(|column| column.iter().filter_map(|&(row, value)| of(row).map(|k: u32| (k, value))).collect());
-    let mut columns: Vec<Vec<(u32, f64)>> = columns.collect();
-    let mut pinned: Vec<u32> = constants.split.pinned().iter().filter_map(|&node| of(node)).collect();
-    if !problem.is_anchored() {
-        // One node outside of the floating regions is pinned, and an extra unknown takes up what is not balanced.
-        let ones = vec![1.0; constants.split.extra()];
-        let levels = constants.split.recover(&vec![0.0; known.len()], &ones)?;
-        let free =
-            (0..known.len()).cycle().skip(known.len() / 2).take(known.len()).find(|&i| levels[i] == 0.0);
-        pinned.push(free.unwrap_or(known.len() / 2) as u32);
-        columns.push((0..).zip(&discretization.volumes).map(|(row, &volume)| (row, volume)).collect());
-    }
-    let scales = reduced.map.iter().map(|&node| constants.split.scale(node as usize)).collect();
-    let system =
-        Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?.with_scales(scales)?;
+    let system = match problem.is_anchored() {
+        true => anchored(reduced.clone(), constants, known.len())?,
+        false => adrift(&reduced, discretization, constants)?,
+    };
     Ok((system, reduced))
+}
+
+/// The equations of the unknowns with the constants as extra ones, where something fixes them all; `nodes` is the number of all
+/// nodes.
+pub(super) fn anchored(
+    reduced: Reduced,
+    constants: &SplitRows,
+    nodes: usize,
+) -> Result<Bordered, MethodError> {
+    let mut unknown_of = vec![None; nodes];
+    (0..).zip(&reduced.map).for_each(|(k, &node)| unknown_of[node as usize] = Some(k));
+    let column = |column: &Vec<(u32, f64)>| {
+        column.iter().filter_map(|&(row, value)| Some((unknown_of[row as usize]?, value))).collect()
+    };
+    let columns = constants.columns.iter().map(column).collect();
+    let split = constants.split.restricted(&reduced.map)?;
+    let pinned = split.pinned().to_vec();
+    Ok(Bordered::new(reduced.matrix, columns, pinned, reduced.rhs)?.with_split(split)?)
+}
+
+/// The same where nothing fixes the whole, so that all nodes are unknowns: one outside of the floating regions is pinned, and a
+/// further extra unknown takes up what is not balanced.
+fn adrift(
+    reduced: &Reduced,
+    discretization: &Discretization,
+    constants: &SplitRows,
+) -> Result<Bordered, MethodError> {
+    let (split, n) = (&constants.split, reduced.map.len());
+    let levels = split.recover(&vec![0.0; n], &vec![1.0; split.extra()])?;
+    let free = (0..n).cycle().skip(n / 2).take(n).find(|&i| levels[i] == 0.0);
+    let (mut columns, mut pinned) = (constants.columns.clone(), split.pinned().to_vec());
+    pinned.push(free.unwrap_or(n / 2) as u32);
+    columns.push((0..).zip(&discretization.volumes).map(|(row, &volume)| (row, volume)).collect());
+    let scales = (0..n).map(|i| split.scale(i)).collect();
+    Ok(Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?.with_scales(scales)?)
 }

@@ -122,11 +122,12 @@ impl Mass {
 /// Lengths that do not match.
 pub fn residual(discretization: &Discretization, u: &[f64]) -> Result<Vec<f64>, MethodError> {
     let mut out = vec![0.0; u.len()];
-    let Some(SplitRows { split, columns }) = &discretization.constants else {
+    let Some(SplitRows { split, columns, offsets }) = &discretization.constants else {
         discretization.rows.residual(u, &discretization.rhs, &mut out);
         return Ok(out);
     };
-    let (w, constants) = split.unknowns_of(u)?;
+    let beside: Vec<f64> = u.iter().zip(offsets).map(|(u, offset)| u - offset).collect();
+    let (w, constants) = split.unknowns_of(&beside)?;
     discretization.rows.residual(&w, &discretization.rhs, &mut out);
     for (column, c) in columns.iter().zip(&constants) {
         column.iter().for_each(|&(row, value)| out[row as usize] -= value * c);

@@ -1,8 +1,8 @@
 //! A system that is factored once and solved for many right-hand sides.
 
-use meshless_sparse::{Bordered, DifferenceMatrix, Prepared, PreparedBordered, Reduced, SolveInfo, Split};
+use meshless_sparse::{DifferenceMatrix, Prepared, PreparedBordered, Reduced, SolveInfo, Split};
 
-use super::{SplitValues, SystemParams, floating};
+use super::{SplitValues, SystemParams, floating, given};
 use crate::method::SplitRows;
 use crate::{MethodError, Problem};
 
@@ -72,14 +72,7 @@ impl PreparedSystem {
     ) -> Result<Self, MethodError> {
         let reduced = reduce(&rows, known)?;
         let unknown_of = unknowns(&reduced, rows.n());
-        let of = |node: u32| Some(unknown_of[node as usize]).filter(|&k| k != KNOWN);
-        let column = |column: &Vec<(u32, f64)>| {
-            column.iter().filter_map(|&(row, value)| of(row).map(|k| (k, value))).collect()
-        };
-        let columns = constants.columns.iter().map(column).collect();
-        let pinned = constants.split.pinned().iter().filter_map(|&node| of(node)).collect();
-        let scales = reduced.map.iter().map(|&node| constants.split.scale(node as usize)).collect();
-        let bordered = Bordered::new(reduced.matrix, columns, pinned, reduced.rhs)?.with_scales(scales)?;
+        let bordered = given::anchored(reduced, constants, rows.n())?;
         let prepared = PreparedBordered::new(bordered, &params.solver)?;
         Ok(Self { rows, unknown_of, solver: Solver::Given(Box::new(prepared), constants.split.clone()) })
     }

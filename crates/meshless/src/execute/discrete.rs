@@ -184,7 +184,9 @@ impl<const D: usize> Discrete<D> {
             MethodError::NoCondition { node, ref position } => {
                 build::missing_condition(scene, &self.cloud, node, position)
             }
-            error => Error::Method(error),
+            error => {
+                Error::Method(error.named(|place| Some(scene.regions.get(place as usize)?.name.clone())))
+            }
         }
     }
 }

@@ -165,8 +165,9 @@ fn solve_steady<const D: usize>(
     let problem = discrete.problem();
     progress.stage(if plan.runs(Stage::Cells) { Stage::Cells } else { Stage::LaplacianStencils });
     let start = Instant::now();
-    let discretization =
-        plan.method.params.build().discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
+    let params = &plan.method.params;
+    let method = if plan.runs(Stage::Gradient) { params.keeping_gradients() } else { params.clone() }.build();
+    let discretization = method.discretize(&problem).map_err(|e| discrete.explain(scene, e))?;
     seconds.stencils += discretization.stencil_seconds;
     seconds.assembly = start.elapsed().as_secs_f64() - discretization.stencil_seconds;
     progress.stage(Stage::Solve);
@@ -205,7 +206,8 @@ fn execute_in<const D: usize>(
     let u = &solved.system.u;
     let gradient = if plan.runs(Stage::Gradient) {
         progress.stage(Stage::Gradient);
-        Some(plan.method.params.build().gradient_of(&problem, &solved.system)?)
+        let method = plan.method.params.build();
+        Some(solved.discretization.gradient(method.as_ref(), &problem, &solved.system)?)
     } else {
         None
     };

@@ -30,9 +30,8 @@ impl Plan {
         scene.method.order = None;
         let what = match error {
             MethodError::ThinLayer { region, position, thickness, spacing } => format!(
-                "the region \"{}\" is {thickness:.2e} thin near {position:?}, which a spacing of {spacing:.2e} there \
-                 resolves (`refine_gaps_to` in [points])",
-                scene.regions[*region as usize].name
+                "the region {region} is {thickness:.2e} thin near {position:?}, which a spacing of {spacing:.2e} there \
+                 resolves (`refine_gaps_to` in [points])"
             ),
             error => error.to_string(),
         };

@@ -96,6 +96,7 @@ impl<const D: usize> Method<D> for SurfaceReaction {
             constants: None,
             mass: None,
             interface_points: Vec::new(),
+            gradients: None,
             kinds,
             volumes,
             counts,

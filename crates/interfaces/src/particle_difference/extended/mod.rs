@@ -89,6 +89,7 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
             counts,
             stencil_seconds,
             interface_points: points.described(),
+            gradients: None,
         })
     }
 

@@ -95,6 +95,14 @@ impl MethodParams {
         }
     }
 
+    /// The same, with the gradients at the nodes kept with the rows where that saves making the stencils again.
+    pub(crate) fn keeping_gradients(&self) -> Self {
+        match self {
+            Self::Sharp(params) => Self::Sharp(SharpParams { keep_gradients: true, ..*params }),
+            params => params.clone(),
+        }
+    }
+
     /// Degree of the polynomials that are reproduced away from interfaces.
     pub fn order(&self) -> usize {
         match self {
@@ -107,10 +115,18 @@ impl MethodParams {
         }
     }
 
-    /// The same method at a higher order on the same stencils, by which it can be judged; `None` where there is none.
+    /// The same method at a higher order on the same cloud, by which it can be judged; `None` where there is none.
     pub(crate) fn finer(&self, dimension: usize) -> Option<Self> {
         match self {
             Self::Sharp(params) => sharp::finer(params, dimension).map(Self::Sharp),
+            _ => None,
+        }
+    }
+
+    /// What a stencil takes on one core, where the method knows better than a common figure.
+    pub(super) fn stencil_microseconds(&self, dimension: usize) -> Option<f64> {
+        match self {
+            Self::Sharp(params) => Some(sharp::stencil_microseconds(params, dimension)),
             _ => None,
         }
     }
