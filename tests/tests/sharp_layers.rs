@@ -106,6 +106,7 @@ fn films_within_one_region_are_not_seen_through() {
         let error = solve(&text, 4).expect_err("the ring is not resolved");
         let (at, spacing) = located(&error).unwrap_or_else(|| panic!("{thickness}: {error}"));
         assert!((radius(at) - 0.5).abs() < 0.03 && spacing < thickness, "{thickness}: {error}");
+        assert!(error.to_string().contains("region \"ring\" is "), "{error}");
     }
 }
 
@@ -146,6 +147,35 @@ fn a_shell_in_space_thinner_than_the_spacing() {
     }
 }
 
+/// A disc of diffusivity `eta` at a distance of `gap` from the boundary on its right, `u = -r^2` about its center in both.
+fn beside_the_boundary(gap: f64, eta: f64) -> String {
+    let center = 0.5 - gap;
+    let square = format!("((x - {center:?})^2 + y^2)");
+    let inside = 0.25 * (1.0 / eta - 1.0);
+    format!(
+        "title = \"Strip\"\ndimension = 2\n[domain]\nbox = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}\n\
+         [points]\nspacing = 0.05\nlayout = \"irregular\"\nseed = 1\n\
+         [[regions]]\nname = \"disc\"\nsphere = {{ center = [{center:?}, 0.0], radius = 0.5 }}\n\
+         diffusivity = \"{eta:e}\"\nsource = \"4\"\nexact = \"{inside:e} - {square}/{eta:e}\"\n\
+         [[regions]]\nname = \"outside\"\ndiffusivity = \"1\"\nsource = \"4\"\nexact = \"-{square}\"\n\
+         [[boundaries]]\nface = \"right\"\nneumann = \"-2*(x - {center:?})\"\n\
+         [[boundaries]]\nface = \"all\"\ndirichlet = \"-{square}\"\n"
+    )
+}
+
+#[test]
+fn strips_between_an_interface_and_the_boundary() {
+    for (gap, order, eta) in [(0.002, 4, 1e4), (0.02, 4, 1e-4), (0.02, 6, 1e4), (0.06, 4, 1e4)] {
+        let near = |x: &[f64]| x[0] > 0.9 && x[1].abs() < 0.3;
+        let text = beside_the_boundary(gap, eta);
+        solved_or_located(&text, order, gap + 0.002, 1e-6, near);
+        let report = solve(&refined(&text), order).expect("it is solved").report;
+        assert_eq!(report.thin_layer, None);
+        let error = report.errors.expect("exact").l2;
+        assert!(error < 1e-9, "{gap}, {eta:e}: {error:e}");
+    }
+}
+
 /// With `refine_gaps_to` in `[points]`.
 fn refined(text: &str) -> String {
     text.replace("layout = ", "refine_gaps_to = 1e-4\nlayout = ")
@@ -167,7 +197,7 @@ fn a_gap_in_which_the_field_is_large_is_refined() {
 
 #[test]
 fn films_are_refined() {
-    for (dimension, spacing, thickness) in [(2, 0.05, 0.01), (3, 0.25, 0.2)] {
+    for (dimension, spacing, thickness) in [(2, 0.05, 0.01), (3, 0.25, 0.35)] {
         for eta in [1e-4, 1e4] {
             let text = scene(dimension, spacing, &shell(dimension, thickness, eta));
             let report = solve(&refined(&text), 4).expect("it is solved").report;

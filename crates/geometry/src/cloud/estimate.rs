@@ -38,7 +38,10 @@ pub fn estimate_nodes<const D: usize>(
 }
 
 /// Half a node for every node on the planes of an outer box.
-fn half_layer<const D: usize>(domain: &Domain<D>, spacing: &Spacing<D>) -> Result<f64, GeometryError> {
+pub(crate) fn half_layer<const D: usize>(
+    domain: &Domain<D>,
+    spacing: &Spacing<D>,
+) -> Result<f64, GeometryError> {
     let Some(bounds) = domain.outer_box() else { return Ok(0.0) };
     let mut nodes = 0.0;
     for axis in 0..D {

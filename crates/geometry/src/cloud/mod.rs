@@ -11,8 +11,8 @@ mod quality;
 mod sizes;
 mod validate;
 
-pub(crate) use estimate::too_many;
 pub use estimate::{check_size, estimate_nodes};
+pub(crate) use estimate::{half_layer, too_many};
 pub use generate::generate;
 pub use given::{GivenCloud, GivenParams, around};
 pub use params::{CloudParams, Layout, Spacing, SpacingFn};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::RegionMap;
+use super::{RegionMap, ThinLayer};
 use crate::cloud::{Cloud, CloudParams, Size, Sizes, Spacing, generate};
 use crate::domain::Domain;
 use crate::error::GeometryError;
@@ -42,40 +42,79 @@ impl<const D: usize> RegionMap<D> {
         gaps: &GapParams,
     ) -> Result<Cloud<D>, GeometryError> {
         let mut cloud = generate(domain, params)?;
-        let mut places: Vec<Size<D>> = Vec::new();
-        let mut sizes = Sizes::default();
+        let mut refined = Refined::new(&params.spacing);
         for _ in 1..CLOUDS {
-            let layers = self.thin_layers(&cloud, domain, gaps.across);
-            let asked = layers.iter().map(|l| (l.at, (l.thickness / (ROOM * gaps.across)).max(gaps.least)));
-            let before = places.len();
-            let mut new = SpatialHash::new();
-            for (at, size) in asked {
-                let given = sizes.at(&at, params.spacing.at(&at)?);
-                if given > MET * size && !new.conflicts(&at, size, APART) {
-                    new.insert(at, size);
-                    places.push((at, size));
-                }
-            }
-            if places.len() == before {
+            if !refined.resolve(&self.thin_layers(&cloud, domain, gaps.across), gaps)? {
                 break;
             }
-            sizes = Sizes::new(places.clone());
-            let (given, asked) = (params.spacing.clone(), sizes.clone());
-            // What is no spacing is refused where it is evaluated.
-            let spacing = move |x: &[f64; D]| given.at(x).map_or(f64::NAN, |largest| asked.at(x, largest));
-            cloud = generate(
-                domain,
-                &CloudParams { spacing: Spacing::Graded(Arc::new(spacing)), ..params.clone() },
-            )?;
+            cloud = generate(domain, &CloudParams { spacing: refined.spacing(), ..params.clone() })?;
         }
         Ok(cloud)
+    }
+}
+
+/// A spacing, and what layers ask for.
+#[derive(Debug)]
+pub(super) struct Refined<'a, const D: usize> {
+    given: &'a Spacing<D>,
+    places: Vec<Size<D>>,
+    sizes: Sizes<D>,
+}
+
+impl<'a, const D: usize> Refined<'a, D> {
+    pub(super) fn new(given: &'a Spacing<D>) -> Self {
+        Self { given, places: Vec::new(), sizes: Sizes::default() }
+    }
+
+    /// Whether nothing was asked for.
+    pub(super) fn is_plain(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Takes up what layers ask for; whether that is less than what there was.
+    ///
+    /// # Errors
+    /// Those of [`Spacing::at`].
+    pub(super) fn resolve(
+        &mut self,
+        layers: &[ThinLayer<D>],
+        gaps: &GapParams,
+    ) -> Result<bool, GeometryError> {
+        let before = self.places.len();
+        let mut new = SpatialHash::new();
+        for layer in layers {
+            let size = (layer.thickness / (ROOM * gaps.across)).max(gaps.least);
+            let given = self.at(&layer.at)?;
+            if given > MET * size && !new.conflicts(&layer.at, size, APART) {
+                new.insert(layer.at, size);
+                self.places.push((layer.at, size));
+            }
+        }
+        self.sizes = Sizes::new(self.places.clone());
+        Ok(self.places.len() > before)
+    }
+
+    /// The spacing at a point.
+    ///
+    /// # Errors
+    /// Those of [`Spacing::at`].
+    pub(super) fn at(&self, x: &[f64; D]) -> Result<f64, GeometryError> {
+        Ok(self.sizes.at(x, self.given.at(x)?))
+    }
+
+    /// The same as a function.
+    pub(super) fn spacing(&self) -> Spacing<D> {
+        let (given, sizes) = (self.given.clone(), self.sizes.clone());
+        // What is no spacing is refused where it is evaluated.
+        let at = move |x: &[f64; D]| given.at(x).map_or(f64::NAN, |largest| sizes.at(x, largest));
+        Spacing::Graded(Arc::new(at))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloud::{Layout, quality};
+    use crate::cloud::{Layout, check_size, quality};
     use crate::shape::Shape;
 
     const GAPS: GapParams = GapParams { across: 2.0, least: 1e-4 };
@@ -99,6 +138,9 @@ mod tests {
         let regions = RegionMap::new(vec![disc(0.0, 0.5), None]).expect("regions");
         let cloud = regions.generate(&domain, &params(0.1), &GAPS).expect("a cloud");
         assert_eq!(cloud, generate(&domain, &params(0.1)).expect("a cloud"));
+        let plain = check_size(&domain, &params(0.1).spacing, 100_000).expect("a number");
+        assert_eq!(regions.foresee_nodes(&domain, &params(0.1), &GAPS), Ok(plain));
+        assert!(regions.foresee_nodes(&domain, &params(0.001), &GAPS).is_err());
     }
 
     #[test]
@@ -115,6 +157,9 @@ mod tests {
             let least = cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b));
             assert!((thickness / 3.0..=thickness / 2.0).contains(&least), "{thickness}: {least}");
             assert!(cloud.len() < 10_000, "{thickness}: {}", cloud.len());
+            let foreseen = regions.foresee_nodes(&domain, &params(0.1), &GAPS).expect("a number");
+            let ratio = foreseen / cloud.len() as f64;
+            assert!((0.75..1.33).contains(&ratio), "{thickness}: {foreseen} for {}", cloud.len());
             assert!(quality(&cloud, &domain).relative_separation > 0.7);
         }
     }
@@ -137,5 +182,8 @@ mod tests {
         let cloud = regions.generate(&domain, &params(0.2), &GAPS).expect("a cloud");
         assert_eq!(regions.thin_layers(&cloud, &domain, GAPS.across), Vec::new());
         assert!(cloud.len() < 20_000, "{}", cloud.len());
+        let ratio =
+            regions.foresee_nodes(&domain, &params(0.2), &GAPS).expect("a number") / cloud.len() as f64;
+        assert!((0.75..1.33).contains(&ratio), "{ratio}");
     }
 }

@@ -35,7 +35,7 @@ const FACING: f64 = 0.8;
 /// How much farther than its level says a surface may be: a level set need not be a distance.
 const SLACK: f64 = 4.0;
 
-/// Where a region is thin: between two interfaces that face each other.
+/// Where a region is thin: between two interfaces that face each other, or between one and the boundary of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinLayer<const D: usize> {
     /// The middle of the shortest way through it, from the interface point nearest to a node.
@@ -50,8 +50,8 @@ pub struct ThinLayer<const D: usize> {
 
 impl<const D: usize> RegionMap<D> {
     /// Where regions are thinner than `least` spacings of the cloud, as seen from every node that an interface is as near
-    /// to: layers, gaps and small inclusions, whether a node lies in them or not. Tips where interfaces meet at an
-    /// angle or touch are not among them, nor is what lies between an interface and the boundary of the domain.
+    /// to: layers, gaps and small inclusions, whether a node lies in them or not, also along the boundary of the domain. Tips
+    /// where interfaces meet each other or the boundary at an angle, or touch, are not among them.
     pub fn thin_layers(&self, cloud: &Cloud<D>, domain: &Domain<D>, least: f64) -> Vec<ThinLayer<D>> {
         if self.len() == 1 {
             return Vec::new();
@@ -71,7 +71,13 @@ impl<const D: usize> RegionMap<D> {
         layers
     }
 
-    fn thin_near(&self, x: &[f64; D], spacing: f64, domain: &Domain<D>, least: f64) -> Vec<ThinLayer<D>> {
+    pub(super) fn thin_near(
+        &self,
+        x: &[f64; D],
+        spacing: f64,
+        domain: &Domain<D>,
+        least: f64,
+    ) -> Vec<ThinLayer<D>> {
         let reach = least * spacing;
         let mut found = Vec::new();
         for label in 0..self.len() as u16 - 1 {
@@ -81,11 +87,8 @@ impl<const D: usize> RegionMap<D> {
             }
             let Ok(foot) = shape.project(x, reach) else { continue };
             for sign in [-1.0, 1.0] {
-                let across = Across { surface: label, sign, spacing, least };
-                let way = self.way(&across, &foot).filter(|way| {
-                    let inside = [&way.middle(), &way.far].iter().all(|x| domain.contains(x, 0.0));
-                    inside && !self.is_in_a_tip(&across, way)
-                });
+                let across = Across { domain, surface: label, sign, spacing, least };
+                let way = self.way(&across, &foot).filter(|way| !self.is_in_a_tip(&across, way));
                 found.extend(way.map(|way| ThinLayer {
                     at: way.middle(),
                     thickness: way.length,
@@ -98,28 +101,35 @@ impl<const D: usize> RegionMap<D> {
     }
 
     /// The way through the layer that begins at a point of an interface.
-    fn way(&self, across: &Across, foot: &Projection<D>) -> Option<Way<D>> {
+    fn way(&self, across: &Across<'_, D>, foot: &Projection<D>) -> Option<Way<D>> {
         let direction = foot.normal.map(|n| across.sign * n);
-        let label = |t: f64| self.label(&axpy(&foot.point, t * across.spacing, &direction), 0.0);
-        let region = label(BESIDE);
-        if region == label(-BESIDE) {
+        let at = |t: f64| axpy(&foot.point, t * across.spacing, &direction);
+        // Nothing outside of the domain; what runs along its boundary is in it.
+        let label = |t: f64| {
+            let inside = across.domain.contains(&at(t), BESIDE * across.spacing);
+            inside.then(|| self.label(&at(t), 0.0))
+        };
+        let region = label(BESIDE)?;
+        if label(-BESIDE).is_none_or(|other| other == region) {
             return None;
         }
         let steps = (across.least / STEP).ceil() as usize;
-        let end = (1..=steps).map(|k| k as f64 * STEP).find(|&t| label(t) != region)?;
+        let end = (1..=steps).map(|k| k as f64 * STEP).find(|&t| label(t) != Some(region))?;
         let (mut low, mut high) = ((end - STEP).max(BESIDE), end);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            *(if label(middle) == region { &mut low } else { &mut high }) = middle;
+            *(if label(middle) == Some(region) { &mut low } else { &mut high }) = middle;
         }
+        let far = at(high);
+        let facing = match label(high) {
+            Some(beyond) => self.project(region, beyond, &far, STEP * across.spacing).ok()?.normal,
+            None => normalized(&across.domain.gradient(&far))?,
+        };
         let length = high * across.spacing;
-        let far = axpy(&foot.point, length, &direction);
-        let facing = self.project(region, label(high), &far, STEP * across.spacing).ok()?.normal;
         (dot(&facing, &direction) >= FACING).then_some(Way {
             from: foot.point,
             direction,
             length,
-            far,
             facing,
             region,
         })
@@ -127,7 +137,7 @@ impl<const D: usize> RegionMap<D> {
 
     /// Whether a way leads through a tip: thinner and thinner to one side until the two surfaces touch, where no spacing resolves
     /// what is between them, and to the other side as thick as is asked for.
-    fn is_in_a_tip(&self, across: &Across, way: &Way<D>) -> bool {
+    fn is_in_a_tip(&self, across: &Across<'_, D>, way: &Way<D>) -> bool {
         let mut thin = *way;
         let contact = (0..DESCENTS).any(|_| {
             thin = self.thinner(across, &thin).unwrap_or(thin);
@@ -137,7 +147,7 @@ impl<const D: usize> RegionMap<D> {
     }
 
     /// Whether a layer is as thick as is asked for where the way to where it is thicker leads.
-    fn grows_thick(&self, across: &Across, way: &Way<D>) -> bool {
+    fn grows_thick(&self, across: &Across<'_, D>, way: &Way<D>) -> bool {
         let Some(shape) = self.shape(across.surface) else { return false };
         let mut way = *way;
         for _ in 0..DESCENTS {
@@ -166,7 +176,7 @@ impl<const D: usize> RegionMap<D> {
     }
 
     /// A way where the layer is clearly thinner; `None` where it is not, or no layer any more.
-    fn thinner(&self, across: &Across, way: &Way<D>) -> Option<Way<D>> {
+    fn thinner(&self, across: &Across<'_, D>, way: &Way<D>) -> Option<Way<D>> {
         let shape = self.shape(across.surface)?;
         let (slope, direction) = (way.slope(), normalized(&way.thinner())?);
         if slope < LEVEL {
@@ -182,7 +192,8 @@ impl<const D: usize> RegionMap<D> {
 }
 
 /// From which side of which surface a layer is looked through, and how far.
-struct Across {
+struct Across<'a, const D: usize> {
+    domain: &'a Domain<D>,
     surface: u16,
     /// 1 along the normal of the surface, -1 against it.
     sign: f64,
@@ -197,9 +208,7 @@ struct Way<const D: usize> {
     from: [f64; D],
     direction: [f64; D],
     length: f64,
-    /// Where it ends.
-    far: [f64; D],
-    /// The normal out of the layer there.
+    /// The normal out of the layer where it ends.
     facing: [f64; D],
     /// What the layer is of.
     region: u16,
@@ -278,6 +287,32 @@ mod tests {
         let square = |x: f64, y: f64| Shape::cuboid([x, y], [x + 0.3, y + 0.3]).expect("a box");
         assert_eq!(layers(vec![square(-0.3, 0.0), square(0.0, 0.0), square(-0.3, -0.3)], 0.05), Vec::new());
         assert_eq!(layers(vec![square(-0.3, 0.0), square(0.0, -0.3)], 0.05), Vec::new());
+    }
+
+    #[test]
+    fn what_lies_between_an_interface_and_the_boundary_is_a_layer() {
+        for gap in [0.002, 0.03, 0.09] {
+            let disc = Shape::ball([0.7 - gap, 0.0], 0.3).expect("a disc");
+            let found = layers(vec![disc], 0.05);
+            let least = found.iter().map(|l| l.thickness).fold(f64::INFINITY, f64::min);
+            assert!((0.99 * gap..gap + 0.0015).contains(&least), "{gap}: {least}");
+            assert!(
+                found.iter().all(|l| l.region == 1 && l.at[0] > 0.88 && l.at[1].abs() < 0.3),
+                "{found:?}"
+            );
+        }
+        // The slab between a half-space and a face, and a slab of its own along it.
+        let slab = |x: f64| Shape::half_space([x, 0.0], [1.0, 0.0]).expect("a half-space");
+        assert!(layers(vec![slab(0.97)], 0.05).iter().all(|l| l.region == 1 && l.thickness < 0.0301));
+        assert!(layers(vec![slab(-0.97)], 0.05).iter().all(|l| l.region == 0 && l.thickness < 0.0301));
+        assert!([0.97, -0.97].iter().all(|&x| layers(vec![slab(x)], 0.05).len() > 40));
+        // Far enough away; touching; meeting it at an angle.
+        assert_eq!(layers(vec![slab(0.85)], 0.05), Vec::new());
+        assert_eq!(layers(vec![Shape::ball([0.7, 0.0], 0.3).expect("a disc")], 0.05), Vec::new());
+        for slope in [0.3, 1.0, 10.0] {
+            let wedge = Shape::half_space([0.5, -1.0], [slope, -1.0]).expect("a half-space");
+            assert_eq!(layers(vec![wedge], 0.05), Vec::new(), "{slope}");
+        }
     }
 
     #[test]

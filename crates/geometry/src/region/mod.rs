@@ -1,5 +1,6 @@
 //! Regions by shape, and how they lie next to each other.
 
+mod foresee;
 mod gaps;
 mod graph;
 mod layers;

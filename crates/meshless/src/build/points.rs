@@ -1,6 +1,8 @@
 //! The cloud of a scene: generated, or round the points of a file.
 
-use meshless_geometry::{Cloud, CloudParams, Domain, GapParams, GivenParams, RegionMap, around, generate};
+use meshless_geometry::{
+    Cloud, CloudParams, Domain, GapParams, GivenParams, RegionMap, around, check_size, generate,
+};
 
 use super::shapes::{explain_cloud, layout, regions, spacing};
 use crate::scene::{FilePoints, GapSpec, PointsFileSpec, Scene};
@@ -26,20 +28,41 @@ pub(crate) fn file_points<const D: usize>(
     Ok(file.read::<D>(scene.is_labelled().then_some(&scene.regions))?)
 }
 
+/// What is asked of a cloud that is generated.
+fn params<const D: usize>(scene: &Scene) -> CloudParams<D> {
+    CloudParams {
+        spacing: spacing(scene),
+        layout: layout(scene),
+        seed: scene.points.seed,
+        max_nodes: MAX_NODES,
+    }
+}
+
+/// What is asked for in layers and gaps, if anything is.
+fn gaps(scene: &Scene) -> Option<GapParams> {
+    scene.points.gaps.map(|GapSpec { least, across }| GapParams { across, least })
+}
+
+/// About how many nodes the cloud of a scene will have.
+pub(super) fn estimated<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result<f64, Error> {
+    if let Some(file) = &scene.points.file {
+        return Ok(file_points::<D>(scene, file)?.points.len() as f64);
+    }
+    let params = params(scene);
+    let estimate = match gaps(scene).filter(|_| !scene.is_labelled()) {
+        Some(gaps) => regions(scene)?.foresee_nodes(domain, &params, &gaps),
+        None => check_size(domain, &params.spacing, params.max_nodes),
+    };
+    estimate.map_err(|e| explain_cloud(scene, e))
+}
+
 /// The cloud and the regions of a scene.
 pub(crate) fn place<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result<Placed<D>, Error> {
     let regions = if scene.is_labelled() { RegionMap::new(vec![None])? } else { regions(scene)? };
     let Some(file) = &scene.points.file else {
-        let params = CloudParams {
-            spacing: spacing(scene),
-            layout: layout(scene),
-            seed: scene.points.seed,
-            max_nodes: MAX_NODES,
-        };
-        let made = match scene.points.gaps {
-            Some(GapSpec { least, across }) => {
-                regions.generate(domain, &params, &GapParams { across, least })
-            }
+        let params = params(scene);
+        let made = match gaps(scene) {
+            Some(gaps) => regions.generate(domain, &params, &gaps),
             None => generate(domain, &params),
         };
         let cloud = made.map_err(|e| explain_cloud(scene, e))?;

@@ -1,12 +1,10 @@
 //! What can be told about a scene without a cloud.
 
-use meshless_geometry::check_size;
-
 use super::fields::materials;
-use super::points::file_points;
-use super::shapes::{domain, explain_cloud, regions, spacing};
+use super::points::{estimated, file_points};
+use super::shapes::{domain, regions};
+use crate::Error;
 use crate::scene::{Scene, ShapeSpec};
-use crate::{Error, MAX_NODES};
 
 /// Points along each axis at which a variable diffusivity is sampled.
 const SAMPLES_PER_AXIS: [usize; 3] = [257, 65, 17];
@@ -26,10 +24,7 @@ pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
 }
 
 fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
-    if let Some(file) = &scene.points.file {
-        return Ok(file_points::<D>(scene, file)?.points.len() as f64);
-    }
-    check_size(&domain::<D>(scene)?, &spacing::<D>(scene), MAX_NODES).map_err(|e| explain_cloud(scene, e))
+    estimated(scene, &domain::<D>(scene)?)
 }
 
 /// Largest over smallest diffusivity: of the constants where all are constant, else of samples on a lattice.
