@@ -21,6 +21,7 @@ struct PlanJson<'a> {
     /// In free space: what is transformed, and what is transformed back.
     #[serde(skip_serializing_if = "Option::is_none")]
     transforms: Option<TransformsJson>,
+    estimate: Option<String>,
     stages: Vec<&'static str>,
     skipped: Vec<SkippedJson>,
     predicted: PredictedJson,
@@ -42,6 +43,7 @@ struct SkippedJson {
 struct PredictedJson {
     unknowns: f64,
     seconds: f64,
+    estimate_seconds: f64,
     memory_mb: f64,
 }
 
@@ -62,11 +64,13 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         refine_gaps_to: plan.refine_gaps_to,
         solver: plan.solver_name(),
         transforms: plan.transforms().map(|[forward, back]| TransformsJson { forward, back }),
+        estimate: plan.estimate_name(),
         stages: plan.stages.iter().map(|s| s.name()).collect(),
         skipped: plan.skipped.iter().map(|s| SkippedJson { what: s.what, why: s.why }).collect(),
         predicted: PredictedJson {
             unknowns: plan.predicted.unknowns,
             seconds: plan.predicted.seconds,
+            estimate_seconds: plan.predicted.estimate_seconds,
             memory_mb: plan.predicted.memory_mb,
         },
     };

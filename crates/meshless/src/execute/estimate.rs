@@ -5,8 +5,8 @@
 //! every method here reaches; else the order of the stencils. On clouds of irregular nodes the difference is itself
 //! irregular; expect a factor of three.
 //!
-//! A method that has a finer order of itself on the same stencils is compared with that instead, on the same cloud: the
-//! difference is the error but for that of the finer order.
+//! A method that has a higher degree of itself on the same cloud is compared with that instead: the difference is the error but for
+//! that of the higher degree.
 //!
 //! Where the nodes do not see a layer no comparison of theirs does, and there is no estimate.
 
@@ -35,16 +35,14 @@ pub(crate) fn estimate<const D: usize>(
         let why_not = format!("nodes on both sides of a layer of \"{}\" do not see it", layer.region);
         return Ok((Estimate { l2: None, why_not: Some(why_not) }, None));
     }
-    match plan.method.params.finer(D) {
-        // A higher order knows no more of interfaces from labels.
-        Some(finer) if scene.time.is_none() && !plan.runs(Stage::PhaseField) => {
-            against_finer(plan, &finer, solved)
-        }
-        _ => Ok((against_coarser(scene, plan, solved)?, None)),
+    match plan.finer() {
+        Some(finer) => against_finer(scene, plan, &finer, solved),
+        None => Ok((against_coarser(scene, plan, solved)?, None)),
     }
 }
 
 fn against_finer<const D: usize>(
+    scene: &Scene,
     plan: &Plan,
     finer: &MethodParams,
     solved: &Solved<D>,
@@ -56,6 +54,7 @@ fn against_finer<const D: usize>(
     let better = match outcome {
         Ok(better) => better,
         Err(error) => {
+            let error = solved.discrete.explain(scene, error);
             let why_not = Some(format!("no solution of a higher order: {error}"));
             return Ok((Estimate { l2: None, why_not }, None));
         }

@@ -54,6 +54,7 @@ pub(super) fn plan(scene: &Scene, survey: Survey) -> Result<Plan, Error> {
         predicted: Predicted {
             unknowns: points,
             seconds: 1e-6 * MICROSECONDS * points,
+            estimate_seconds: 0.0,
             memory_mb: 10.0 + 1e-6 * BYTES[scene.dimension - 1] * points,
         },
     })

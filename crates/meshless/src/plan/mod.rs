@@ -189,6 +189,13 @@ impl Plan {
         }
     }
 
+    /// The method by which the error is estimated on the same cloud; `None` where a coarser cloud is compared.
+    pub(crate) fn finer(&self) -> Option<MethodParams> {
+        // A higher order knows no more of interfaces from labels.
+        let serves = !self.runs(Stage::TimeSteps) && !self.runs(Stage::PhaseField);
+        self.method.params.finer(self.dimension).filter(|_| serves)
+    }
+
     /// The same plan without what a coarser companion solve does not need.
     pub(crate) fn companion(&self) -> Self {
         let mut plan = self.clone();

@@ -1,7 +1,7 @@
 //! What a plan is expected to take.
 
-use super::MethodPlan;
 use super::effects::Survey;
+use super::{MethodParams, MethodPlan};
 use crate::Error;
 use crate::build;
 use crate::scene::Scene;
@@ -13,6 +13,8 @@ pub struct Predicted {
     pub unknowns: f64,
     /// Wall-clock seconds.
     pub seconds: f64,
+    /// Those of them that the estimate of the error takes.
+    pub estimate_seconds: f64,
     /// Memory in units of 1e6 bytes.
     pub memory_mb: f64,
 }
@@ -45,15 +47,23 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
     let unknowns = build::estimated_nodes(scene)?;
     let rates = &RATES[scene.dimension - 1];
     let steps = method.params.steps(survey);
-    let stencils = if steps.stencils { rates.stencil } else { 0.0 };
-    let cells = steps.cells * rates.cell;
+    let stencils = |params: &MethodParams| match steps.stencils {
+        true => params.stencil_microseconds(scene.dimension).unwrap_or(rates.stencil),
+        false => 0.0,
+    };
     let solve = rates.solve * (unknowns / 1e4).max(1.0).powf(SOLVE_GROWTH);
-    let microseconds = rates.points + rates.neighbors + stencils + cells + solve;
-    // The estimate solves again with half as many nodes in every direction.
-    let with_estimate = 1.0 + 0.5_f64.powi(scene.dimension as i32);
+    let nodes = rates.points + rates.neighbors + steps.cells * rates.cell;
+    let own = nodes + stencils(&method.params) + solve;
+    // The method at a higher order on the same nodes, or half as many nodes in every direction.
+    let finer = method.params.finer(scene.dimension).filter(|_| scene.time.is_none());
+    let estimate = match &finer {
+        Some(finer) => stencils(finer) + solve,
+        None => own * 0.5_f64.powi(scene.dimension as i32),
+    };
     Ok(Predicted {
         unknowns,
-        seconds: 1e-6 * microseconds * unknowns * with_estimate,
+        seconds: 1e-6 * (own + estimate) * unknowns,
+        estimate_seconds: 1e-6 * estimate * unknowns,
         memory_mb: BASE_MEMORY_MB + rates.kilobytes * unknowns / 1e3,
     })
 }

@@ -49,6 +49,17 @@ impl Plan {
         }
     }
 
+    /// What the error is estimated from, in words; `None` where it is not.
+    pub fn estimate_name(&self) -> Option<String> {
+        let compares =
+            self.runs(Stage::Estimate) && !matches!(self.method.params, MethodParams::FreeSpace(_));
+        let coarser = || "from a cloud of twice the spacing".to_owned();
+        compares.then(|| match self.finer() {
+            Some(MethodParams::Sharp(finer)) => format!("from fits of degree {}", finer.degree()),
+            _ => coarser(),
+        })
+    }
+
     /// The linear solver in words.
     pub fn solver_name(&self) -> String {
         if matches!(self.method.params, MethodParams::FreeSpace(_)) {
@@ -104,8 +115,13 @@ impl fmt::Display for Plan {
         let p = &self.predicted;
         write!(
             f,
-            "predicted   {:.0} unknowns, {:.2} s on one core, {:.0} MB",
-            p.unknowns, p.seconds, p.memory_mb
+            "predicted   {:.0} unknowns, {:.2} s on one core{}, {:.0} MB",
+            p.unknowns,
+            p.seconds,
+            self.estimate_name().map_or_else(String::new, |name| {
+                format!(" ({:.2} s of it the error estimate, {name})", p.estimate_seconds)
+            }),
+            p.memory_mb
         )
     }
 }

@@ -16,16 +16,34 @@ pub(super) fn params(scene: &Scene) -> SharpParams {
     }
 }
 
-/// Nodes of a stencil for each harmonic polynomial of a part, in three dimensions.
-const NODES_PER_POLYNOMIAL: f64 = 1.4;
+/// Microseconds of a stencil beside its factorisation, and those of a thousand multiplications of that: about, on one core.
+const STENCIL_BASE: f64 = 5.0;
+const STENCIL_RATE: f64 = 2.5;
 
-/// Two orders more. In three dimensions the stencils of the higher order would take five times as long: there they are
-/// as large as those of the lower one, or as its polynomials need at least.
+/// One degree more, on stencils half-way to those of the next order. On the line, where all polynomials without a source are
+/// linear, the next order itself.
 pub(super) fn finer(params: &SharpParams, dimension: usize) -> Option<SharpParams> {
     let order = params.order + 2;
-    let least = (NODES_PER_POLYNOMIAL * ((order + 1) * (order + 1)) as f64).ceil() as usize;
-    let nodes = (dimension == 3).then(|| params.stencil_nodes(dimension).max(least));
-    (order <= MAX_ORDER[dimension - 1]).then_some(SharpParams { order, nodes, ..*params })
+    if dimension == 1 {
+        return (order <= MAX_ORDER[0]).then_some(SharpParams { order, ..*params });
+    }
+    let [own, next] = [*params, SharpParams { order, ..*params }].map(|p| p.stencil_nodes(dimension));
+    let nodes = own.midpoint(next);
+    Some(SharpParams { degree: Some(params.degree() + 1), nodes: Some(nodes), ..*params })
+}
+
+fn harmonic_polynomials(degree: usize, dimension: usize) -> usize {
+    match dimension {
+        1 => 2,
+        2 => 2 * degree + 1,
+        _ => (degree + 1) * (degree + 1),
+    }
+}
+
+/// What a stencil takes: least squares for the polynomials of one region, those that cross an interface being few.
+pub(super) fn stencil_microseconds(params: &SharpParams, dimension: usize) -> f64 {
+    let (rows, columns) = (params.stencil_nodes(dimension), harmonic_polynomials(params.degree(), dimension));
+    STENCIL_BASE + 2e-3 * STENCIL_RATE * (rows * columns * columns) as f64
 }
 
 /// Orders that a dimension does not have.
