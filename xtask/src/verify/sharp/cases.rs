@@ -62,123 +62,107 @@ fn flow(_contrast: f64, h: f64, seed: u64) -> String {
 }
 
 pub(super) fn ladders(effort: Effort) -> Vec<Ladder> {
-    let quick = effort == Effort::Quick;
-    let (seeds, finest) = if quick { (vec![1], 3) } else { (vec![1, 2, 3], 4) };
-    let plain = |case, title, about, scene: Scene, contrast: f64| Ladder {
+    let mut ladders = in_all_sweeps(effort);
+    if at_least(effort, Effort::Default) {
+        ladders.extend(in_the_plane(effort));
+        ladders.extend(in_space(effort));
+    }
+    ladders
+}
+
+/// In the plane, all orders on all clouds of the quick or the longer sweeps.
+fn plain(
+    quick: bool,
+    case: &'static str,
+    [title, about]: [&'static str; 2],
+    scene: Scene,
+    contrast: f64,
+) -> Ladder {
+    Ladder {
         case,
         title,
         about,
         scene,
         variants: vec![sharp(2), sharp(4), sharp(6)],
         contrasts: vec![contrast],
-        seeds: seeds.clone(),
-        levels: 0..finest,
+        seeds: if quick { vec![1] } else { vec![1, 2, 3] },
+        levels: 0..if quick { 3 } else { 4 },
         smooth: true,
         space: false,
         beyond: &[],
-    };
-    let mut ladders = vec![
-        Ladder {
-            contrasts: if quick { vec![1e2, 1e10] } else { vec![1e2, 1e6, 1e10] },
-            ..plain(
-                "interior",
-                "Interior interface",
-                "Kraus et al., section 3.3: the stiff region floats.",
-                interior,
-                0.0,
-            )
-        },
-        Ladder {
-            beyond: NO_FLUX_JUMPS,
-            ..plain(
-                "disc",
-                "Disc of variable conductivity",
-                "Yoon and Song, section 3.2: the diffusivity varies inside, and the flux jumps.",
-                disc,
-                1e2,
-            )
-        },
-        plain(
-            "graded",
-            "Diffusivity that varies",
-            "By the contrast, exponentially; it does not jump.",
-            graded,
-            1e4,
-        ),
-        Ladder {
-            beyond: NO_VALUE_JUMPS,
-            ..plain("star", "Star", "u and its flux jump along a star-shaped interface.", star, 1e2)
-        },
-    ];
-    if at_least(effort, Effort::Default) {
-        let from_first = |ladder: Ladder| Ladder { levels: 1..finest, seeds: vec![1, 2], ..ladder };
-        // Whose coarse clouds are far from the asymptotic order.
-        let finer = |ladder: Ladder| Ladder { levels: 1..finest + 1, seeds: vec![1, 2], ..ladder };
-        ladders.extend([
-            Ladder {
-                contrasts: vec![1e10, 1e-10],
-                ..finer(plain("mode-3", "Disc in a field of mode 3", "No source, no jump.", circle_mode, 0.0))
-            },
-            Ladder {
-                beyond: NO_VALUE_JUMPS,
-                ..from_first(plain(
-                    "ellipse",
-                    "Ellipse",
-                    "u and its flux jump along an ellipse.",
-                    ellipse,
-                    1e2,
-                ))
-            },
-            Ladder {
-                beyond: NO_VALUE_JUMPS,
-                ..from_first(plain("pair", "Two discs", "At a distance of half a spacing.", pair, 1e2))
-            },
-            Ladder {
-                beyond: &[("immersed-interface", "four regions meet")],
-                ..from_first(plain("quadrants", "Four materials", "They meet at a point.", quadrants, 1e4))
-            },
-            Ladder {
-                ..from_first(plain(
-                    "curved",
-                    "Curved interface",
-                    "Kraus et al., section 3.2: it meets the boundary.",
-                    curved,
-                    1e2,
-                ))
-            },
-            Ladder {
-                beyond: NO_FLUX_JUMPS,
-                ..finer(plain(
-                    "cylinder",
-                    "Flow about a cylinder",
-                    "The flux jumps, the conductivity does not.",
-                    flow,
-                    1.0,
-                ))
-            },
-            Ladder {
-                variants: vec![sharp_in_space(4), sharp_in_space(6)],
-                contrasts: vec![1e10, 1e-10],
-                seeds: vec![1],
-                levels: 0..2,
-                smooth: false,
-                space: true,
-                beyond: &[(
-                    "gfdm-classical",
-                    "smeared over the interface, it has no solution to 1e-11 at 1e10",
-                )],
-                ..plain("ball", "Ball in a field of mode 3", "In space.", ball_mode, 0.0)
-            },
-            Ladder {
-                variants: vec![sharp_in_space(4)],
-                seeds: vec![1],
-                levels: 0..2,
-                smooth: false,
-                space: true,
-                beyond: NO_VALUE_JUMPS,
-                ..plain("torus", "Torus", "In space; u and its flux jump.", torus, 1e2)
-            },
-        ]);
     }
-    ladders
+}
+
+fn in_all_sweeps(effort: Effort) -> Vec<Ladder> {
+    let quick = effort == Effort::Quick;
+    let interior_words = ["Interior interface", "Kraus et al., section 3.3: the stiff region floats."];
+    let disc_words = [
+        "Disc of variable conductivity",
+        "Yoon and Song, section 3.2: the diffusivity varies inside, and the flux jumps.",
+    ];
+    let graded_words = ["Diffusivity that varies", "By the contrast, exponentially; it does not jump."];
+    let star_words = ["Star", "u and its flux jump along a star-shaped interface."];
+    let contrasts = if quick { vec![1e2, 1e10] } else { vec![1e2, 1e6, 1e10] };
+    vec![
+        Ladder { contrasts, ..plain(quick, "interior", interior_words, interior, 0.0) },
+        Ladder { beyond: NO_FLUX_JUMPS, ..plain(quick, "disc", disc_words, disc, 1e2) },
+        plain(quick, "graded", graded_words, graded, 1e4),
+        Ladder { beyond: NO_VALUE_JUMPS, ..plain(quick, "star", star_words, star, 1e2) },
+    ]
+}
+
+fn in_the_plane(effort: Effort) -> Vec<Ladder> {
+    // Without the coarsest cloud; and those whose coarse clouds are far from the asymptotic order, up to a finer one. Four clouds
+    // of three seeds each in the full sweep.
+    let full = effort == Effort::Full;
+    let from_first = |case, words, scene: Scene, contrast| Ladder {
+        levels: 1..if full { 5 } else { 4 },
+        seeds: if full { vec![1, 2, 3] } else { vec![1, 2] },
+        ..plain(false, case, words, scene, contrast)
+    };
+    let finer = |case, words, scene: Scene, contrast| Ladder {
+        levels: 1..5,
+        ..from_first(case, words, scene, contrast)
+    };
+    let mode_words = ["Disc in a field of mode 3", "No source, no jump."];
+    let ellipse_words = ["Ellipse", "u and its flux jump along an ellipse."];
+    let pair_words = ["Two discs", "At a distance of half a spacing."];
+    let quadrants_words = ["Four materials", "They meet at a point."];
+    let curved_words = ["Curved interface", "Kraus et al., section 3.2: it meets the boundary."];
+    let cylinder_words = ["Flow about a cylinder", "The flux jumps, the conductivity does not."];
+    vec![
+        Ladder { contrasts: vec![1e10, 1e-10], ..finer("mode-3", mode_words, circle_mode, 0.0) },
+        Ladder { beyond: NO_VALUE_JUMPS, ..from_first("ellipse", ellipse_words, ellipse, 1e2) },
+        Ladder { beyond: NO_VALUE_JUMPS, ..from_first("pair", pair_words, pair, 1e2) },
+        Ladder {
+            beyond: &[("immersed-interface", "four regions meet")],
+            ..from_first("quadrants", quadrants_words, quadrants, 1e4)
+        },
+        from_first("curved", curved_words, curved, 1e2),
+        Ladder { beyond: NO_FLUX_JUMPS, ..finer("cylinder", cylinder_words, flow, 1.0) },
+    ]
+}
+
+fn in_space(effort: Effort) -> Vec<Ladder> {
+    // About 800 and 7,000 nodes, and 60,000 in the full sweep.
+    let coarse = |case, words, scene: Scene, contrast| Ladder {
+        seeds: vec![1],
+        levels: 0..if effort == Effort::Full { 3 } else { 2 },
+        smooth: false,
+        space: true,
+        ..plain(false, case, words, scene, contrast)
+    };
+    vec![
+        Ladder {
+            variants: vec![sharp_in_space(4), sharp_in_space(6)],
+            contrasts: vec![1e10, 1e-10],
+            beyond: &[("gfdm-classical", "smeared over the interface, it has no solution to 1e-11 at 1e10")],
+            ..coarse("ball", ["Ball in a field of mode 3", "In space."], ball_mode, 0.0)
+        },
+        Ladder {
+            variants: vec![sharp_in_space(4)],
+            beyond: NO_VALUE_JUMPS,
+            ..coarse("torus", ["Torus", "In space; u and its flux jump."], torus, 1e2)
+        },
+    ]
 }

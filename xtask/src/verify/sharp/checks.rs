@@ -8,9 +8,14 @@ use crate::verify::options::Effort;
 use crate::verify::order;
 use crate::verify::runner::Runner;
 use crate::verify::study::{Key, find};
+use crate::verify::variant::Variant;
 
 /// Least orders of u and of its gradient, by the order of the polynomials.
 const ORDERS: [(usize, [f64; 2]); 3] = [(2, [1.8, 1.3]), (4, [3.7, 3.3]), (6, [5.3, 4.8])];
+
+/// Least orders of u in space on the clouds of about 7,000 and 60,000 nodes, and their largest spacing.
+const FINE_ORDERS: [(usize, f64); 2] = [(4, 3.5), (6, 5.0)];
+const FINE: f64 = 0.11;
 
 /// Where three rungs are all there is, the coarsest of which resolves the interface by a few nodes.
 const QUICK_MARGIN: f64 = 0.4;
@@ -50,18 +55,30 @@ pub(super) fn ladder(runner: &Runner<'_>, ladder: &Ladder, claims: &mut Claims) 
                 claims.at_least(ladder.case, claim, order::fit(&resolved), least);
             }
         }
+        if ladder.case == "ball" && runner.options.effort == Effort::Full {
+            fine(runner, ladder, variant, claims);
+        }
         if ladder.contrasts.len() > 1 && ladder.contrasts.iter().all(|&c| c >= 1e2) {
             spread(runner, ladder, variant, claims);
         }
     }
 }
 
-fn spread(
-    runner: &Runner<'_>,
-    ladder: &Ladder,
-    variant: crate::verify::variant::Variant,
-    claims: &mut Claims,
-) {
+/// The order of u between 5,000 and 60,000 nodes in space.
+fn fine(runner: &Runner<'_>, ladder: &Ladder, variant: Variant, claims: &mut Claims) {
+    let Some((p, least)) = FINE_ORDERS.iter().find(|(order, _)| Some(*order) == variant.order) else {
+        return;
+    };
+    for &jump in &ladder.contrasts {
+        let key = Key { case: ladder.case, variant, jump, level: 0, seed: ladder.seeds[0] };
+        let mut rungs = rungs(runner, &key, |r| r.err_l2);
+        rungs.retain(|(spacing, _)| *spacing < FINE);
+        let claim = format!("contrast {jump:e}, p = {p}: order of u in L2, 7,000 and 60,000 nodes");
+        claims.at_least(ladder.case, claim, order::fit(&rungs), *least);
+    }
+}
+
+fn spread(runner: &Runner<'_>, ladder: &Ladder, variant: Variant, claims: &mut Claims) {
     let worst = ladder.levels.clone().filter_map(|level| {
         let at = |&jump: &f64| {
             let key = Key { case: ladder.case, variant, jump, level, seed: ladder.seeds[0] };
