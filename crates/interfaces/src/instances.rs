@@ -27,7 +27,7 @@ fn use_rows<const D: usize>(problem: &Problem<'_, D>, rows: &Discretization) -> 
     diagnose_nodes(problem, rows, 2);
     let sampler = Sampler::new(problem, &solution.u).ok()?;
     sampler.at(&problem.cloud.points()[0], &mut sampler.scratch())?;
-    PreparedSystem::new(problem, rows.rows.clone(), &[], &params).ok()?;
+    PreparedSystem::new(problem, &rows.rows, &[], &params).ok()?;
     let (cloud, lists): (&Cloud<D>, &NeighborLists) = (problem.cloud, problem.supports.lists);
     regions_from_labels(cloud, lists, problem.labels, 2, &PhaseFieldParams::default()).ok()?;
     Some(())

@@ -43,6 +43,7 @@ mod error;
 mod floating;
 mod market;
 mod multigrid;
+mod parallel;
 mod precond;
 mod solver;
 mod vector;

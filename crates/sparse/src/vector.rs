@@ -1,6 +1,6 @@
 //! Vector kernels whose results do not depend on the number of threads.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Elements that are added in one go. Sums run over blocks of this size, whatever the number of threads.
 const BLOCK: usize = 4096;
@@ -28,9 +28,12 @@ pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     if x.len() < PARALLEL_FROM {
         return x.chunks(BLOCK).zip(y.chunks(BLOCK)).map(|(a, b)| block_dot(a, b)).sum();
     }
-    let blocks: Vec<f64> =
-        x.par_chunks(BLOCK).zip(y.par_chunks(BLOCK)).map(|(a, b)| block_dot(a, b)).collect();
-    blocks.iter().sum()
+    let mut sums = vec![0.0; x.len().div_ceil(BLOCK)];
+    parallel::for_each_part(&mut sums, 1, &|k, sum| {
+        let block = k * BLOCK..x.len().min((k + 1) * BLOCK);
+        sum[0] = block_dot(&x[block.clone()], &y[block]);
+    });
+    sums.iter().sum()
 }
 
 /// Euclidean norm. Overflows beyond 1e154: the systems that come here have scaled rows.
@@ -48,7 +51,10 @@ fn update(y: &mut [f64], x: &[f64], f: impl Fn(&mut f64, f64) + Sync) {
     if y.len() < PARALLEL_FROM {
         step((y, x));
     } else {
-        y.par_chunks_mut(BLOCK).zip(x.par_chunks(BLOCK)).for_each(step);
+        parallel::for_each_part(y, BLOCK, &|k, y| {
+            let own = k * BLOCK..k * BLOCK + y.len();
+            step((y, &x[own]));
+        });
     }
 }
 

@@ -62,8 +62,57 @@ fn an_iterative_solve_is_right_or_refused() {
                     let error = error(&split, &solution, &exact);
                     assert!(error < 1e-6, "{kind:?}, {contrast:e}: {error:e}, {:?}", solution.info);
                 }
-                Err(SolveError::NoConvergence { .. } | SolveError::BreakDown { .. }) => refused += 1,
+                Err(SolveError::NoConvergence { .. } | SolveError::BreakDown { .. }) => {
+                    refused += 1;
+                }
                 Err(other) => panic!("{kind:?}, {contrast:e}: {other}"),
+            }
+        }
+    }
+    assert!(refused > 0, "nothing is hard here: the test shows nothing");
+}
+
+/// What solves to the tolerance promise of the whole, by the documentation: the tolerance times the norms of the right-hand side and
+/// of the columns of the extra unknowns, all with rows of largest entries between 1 and 2; and what is left.
+fn promised_and_left(system: &Bordered, tolerance: f64, solution: &BorderedSolution) -> (f64, f64) {
+    let (matrix, n) = (system.matrix(), system.n());
+    let factor = |i: usize| {
+        let entries = matrix.row(i).1.iter().fold(matrix.diagonal(i).abs(), |m, v| m.max(v.abs()));
+        (-entries.log2().floor()).exp2()
+    };
+    let norm = |x: &[f64]| (0..n).map(|i| (factor(i) * x[i]).powi(2)).sum::<f64>().sqrt();
+    let column = |k: usize| {
+        let mut x = vec![0.0; n];
+        system.columns()[k].iter().for_each(|&(row, value)| x[row as usize] += value);
+        norm(&x)
+    };
+    let parts: f64 = solution.extra.iter().enumerate().map(|(k, c)| c.abs() * column(k)).sum();
+    let left = norm(&system.residual(&solution.values, &solution.extra));
+    (tolerance * (norm(system.rhs()) + parts), left)
+}
+
+#[test]
+fn elimination_keeps_what_its_tolerance_promises_or_says_that_it_does_not() {
+    let mut refused = 0;
+    for contrast in [1e2, 1e3, 1e4, 1e5, 1e6, 1e8] {
+        let (reduced, split, _) = rows(contrast);
+        let system = apply(&reduced, &split);
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
+            for kind in [SolverKind::BiCgStab { l: 2 }, SolverKind::Gmres { restart: 60 }] {
+                let preconditioner = PreconditionerKind::Ilu0;
+                let params = SolverParams { kind, preconditioner, tolerance, ..SolverParams::default() };
+                match system.solve(&params) {
+                    Ok(solution) => {
+                        let (promised, left) = promised_and_left(&system, tolerance, &solution);
+                        let fits = left <= promised * (1.0 + 1e-6) || solution.info.backward_error <= 1e-14;
+                        assert!(fits, "{kind:?}, {contrast:e}, {tolerance:e}: {left:e} of {promised:e}");
+                    }
+                    Err(SolveError::NoConvergence { reason, .. }) if reason.contains("the whole") => {
+                        refused += 1;
+                    }
+                    Err(SolveError::NoConvergence { .. } | SolveError::BreakDown { .. }) => {}
+                    Err(other) => panic!("{kind:?}, {contrast:e}, {tolerance:e}: {other}"),
+                }
             }
         }
     }

@@ -117,9 +117,9 @@ impl MassRows {
         let system = match (columns, &discretization.constants) {
             (Some(columns), Some(constants)) => {
                 let constants = self.columns(columns, constants, &scales);
-                PreparedSystem::with_constants(matrix, &constants, &known, &params)?
+                PreparedSystem::with_constants(&matrix, &constants, &known, &params)?
             }
-            _ => PreparedSystem::new(problem, matrix, &known, &params)?,
+            _ => PreparedSystem::new(problem, &matrix, &known, &params)?,
         };
         Ok(system.solve(&rhs)?.0)
     }

@@ -96,7 +96,7 @@ pub fn solve<const D: usize>(
     let is_known: Vec<bool> = known.iter().map(Option::is_some).collect();
     let rhs: Vec<f64> = known.iter().zip(&discretization.rhs).map(|(g, &b)| g.unwrap_or(b)).collect();
     let params = SystemParams { split_floating, ..*params };
-    let prepared = PreparedSystem::new(problem, rows.clone(), &is_known, &params)?;
+    let prepared = PreparedSystem::new(problem, rows, &is_known, &params)?;
     let (mut u, info) = prepared.solve(&rhs)?;
     let extra = u.split_off(nodes);
     let floating_constants = prepared.floating_constants();

@@ -1,5 +1,7 @@
 //! A system that is factored once and solved for many right-hand sides.
 
+use std::sync::Arc;
+
 use meshless_sparse::{DifferenceMatrix, Prepared, PreparedBordered, Reduced, SolveInfo, Split};
 
 use super::{SplitValues, SystemParams, floating, given};
@@ -13,8 +15,8 @@ const KNOWN: u32 = u32::MAX;
 /// or a preconditioner.
 #[derive(Debug)]
 pub struct PreparedSystem {
-    /// All rows, those of prescribed values included.
-    rows: DifferenceMatrix,
+    /// Entries of rows that prescribed values stand beside: unknown of the row, node of the value, entry.
+    carried: Vec<(u32, u32, f64)>,
     /// Unknown of every node, or [`KNOWN`].
     unknown_of: Vec<u32>,
     solver: Solver,
@@ -41,6 +43,17 @@ fn unknowns(reduced: &Reduced, nodes: usize) -> Vec<u32> {
     unknown_of
 }
 
+/// What elimination has to carry to the right-hand side.
+fn carried(rows: &DifferenceMatrix, unknown_of: &[u32]) -> Vec<(u32, u32, f64)> {
+    let mut carried = Vec::new();
+    for (i, &unknown) in unknown_of.iter().enumerate().filter(|(_, k)| **k != KNOWN) {
+        let (columns, values) = rows.row(i);
+        let known = columns.iter().zip(values).filter(|(j, _)| unknown_of[**j as usize] == KNOWN);
+        carried.extend(known.map(|(&j, &a)| (unknown, j, a)));
+    }
+    carried
+}
+
 impl PreparedSystem {
     /// Prepares rows in which values are prescribed at the nodes that are `known`.
     ///
@@ -48,11 +61,11 @@ impl PreparedSystem {
     /// Those of the solver.
     pub fn new<const D: usize>(
         problem: &Problem<'_, D>,
-        rows: DifferenceMatrix,
+        rows: &DifferenceMatrix,
         known: &[bool],
         params: &SystemParams,
     ) -> Result<Self, MethodError> {
-        let reduced = reduce(&rows, known)?;
+        let reduced = reduce(rows, known)?;
         let split = match params.split_floating {
             true => floating::split(problem, &reduced.matrix, &reduced.map)?.map(|floating| floating.split),
             false => None,
@@ -65,16 +78,17 @@ impl PreparedSystem {
     /// # Errors
     /// Those of the solver.
     pub fn with_constants(
-        rows: DifferenceMatrix,
+        rows: &DifferenceMatrix,
         constants: &SplitRows,
         known: &[bool],
         params: &SystemParams,
     ) -> Result<Self, MethodError> {
-        let reduced = reduce(&rows, known)?;
+        let reduced = reduce(rows, known)?;
         let unknown_of = unknowns(&reduced, rows.n());
         let bordered = given::anchored(reduced, constants, rows.n())?;
         let prepared = PreparedBordered::new(bordered, &params.solver)?;
-        Ok(Self { rows, unknown_of, solver: Solver::Given(Box::new(prepared), constants.split.clone()) })
+        let solver = Solver::Given(Box::new(prepared), constants.split.clone());
+        Ok(Self { carried: carried(rows, &unknown_of), unknown_of, solver })
     }
 
     /// Prepares other rows of the same pattern, as those of another time step: what floats and what is prescribed stay, and
@@ -84,7 +98,7 @@ impl PreparedSystem {
     /// Those of the solver, and a matrix of another size.
     pub fn renewed(
         self,
-        rows: DifferenceMatrix,
+        rows: &DifferenceMatrix,
         constants: Option<&SplitRows>,
         params: &SystemParams,
     ) -> Result<Self, MethodError> {
@@ -92,7 +106,7 @@ impl PreparedSystem {
         if let Some(constants) = constants {
             return Self::with_constants(rows, constants, &known, params);
         }
-        let reduced = reduce(&rows, &known)?;
+        let reduced = reduce(rows, &known)?;
         let split = match self.solver {
             Solver::Plain(_) | Solver::Given(..) => None,
             Solver::Split(_, split) => Some(split),
@@ -101,20 +115,23 @@ impl PreparedSystem {
     }
 
     fn of(
-        rows: DifferenceMatrix,
+        rows: &DifferenceMatrix,
         reduced: Reduced,
         split: Option<Split>,
         params: &SystemParams,
     ) -> Result<Self, MethodError> {
+        let unknown_of = unknowns(&reduced, rows.n());
+        let Reduced { matrix, rhs, .. } = reduced;
         let solver = match split {
             Some(split) => {
-                let bordered = split.apply(&reduced.matrix, &reduced.rhs)?;
+                let bordered = split.apply(&matrix, &rhs)?;
+                // Rows of large systems are not kept twice while they are prepared.
+                drop(matrix);
                 Solver::Split(Box::new(PreparedBordered::new(bordered, &params.solver)?), split)
             }
-            None => Solver::Plain(Box::new(Prepared::new(&reduced.matrix.to_csr(), &params.solver)?)),
+            None => Solver::Plain(Box::new(Prepared::of_rows(Arc::new(matrix), &params.solver)?)),
         };
-        let unknown_of = unknowns(&reduced, rows.n());
-        Ok(Self { rows, unknown_of, solver })
+        Ok(Self { carried: carried(rows, &unknown_of), unknown_of, solver })
     }
 
     /// Constants of floating regions that are solved for beside the nodes.
@@ -141,11 +158,10 @@ impl PreparedSystem {
         &self,
         rhs: &[f64],
     ) -> Result<(Vec<f64>, Option<SplitValues>, SolveInfo), MethodError> {
-        let mut reduced = Vec::with_capacity(rhs.len());
-        for (i, &b) in rhs.iter().enumerate().filter(|(i, _)| self.unknown_of[*i] != KNOWN) {
-            let (columns, values) = self.rows.row(i);
-            let known = columns.iter().zip(values).filter(|(j, _)| self.unknown_of[**j as usize] == KNOWN);
-            reduced.push(b - known.map(|(&j, a)| a * rhs[j as usize]).sum::<f64>());
+        let own = rhs.iter().zip(&self.unknown_of).filter(|(_, k)| **k != KNOWN);
+        let mut reduced: Vec<f64> = own.map(|(&b, _)| b).collect();
+        for &(row, node, a) in &self.carried {
+            reduced[row as usize] -= a * rhs[node as usize];
         }
         let (solution, info) = match &self.solver {
             Solver::Plain(prepared) => prepared.solve(&reduced)?,

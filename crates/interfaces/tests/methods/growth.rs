@@ -51,8 +51,8 @@ fn growth<const D: usize>(setup: &Setup<D>, rows: &Discretization, c: f64) -> f6
         (0..n).map(|i| rows.kinds.get(i).is_some_and(|&k| k == RowKind::Dirichlet)).collect();
     let params = SystemParams { split_floating: false, ..SystemParams::default() };
     let system = match &constants {
-        Some(constants) => PreparedSystem::with_constants(shifted, constants, &known, &params),
-        None => PreparedSystem::new(&setup.problem(), shifted, &known, &params),
+        Some(constants) => PreparedSystem::with_constants(&shifted, constants, &known, &params),
+        None => PreparedSystem::new(&setup.problem(), &shifted, &known, &params),
     };
     let Ok(system) = system else { return f64::INFINITY };
     let size = |u: &[f64]| u[..rows.kinds.len()].iter().map(|u| u * u).sum::<f64>().sqrt();

@@ -2,7 +2,7 @@
 
 use super::Csr;
 use crate::error::MatrixError;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Rows that one task builds into buffers of its own before they are joined.
 const ROWS_PER_BLOCK: usize = 1024;
@@ -84,7 +84,7 @@ struct Block {
 
 /// Builds `nrows` rows in parallel and gives the matrix and the row sums. `scratch` makes what one task needs;
 /// of several errors the one of the lowest row is returned, whatever the number of threads.
-pub(crate) fn build_rows<S, E: From<MatrixError> + Send>(
+pub(crate) fn build_rows<S: Send, E: From<MatrixError> + Send>(
     nrows: usize,
     ncols: usize,
     scratch: impl Fn() -> S + Sync,
@@ -102,10 +102,11 @@ pub(crate) fn build_rows<S, E: From<MatrixError> + Send>(
         }
         Ok(block)
     };
-    let blocks: Vec<Result<Block, E>> = (0..nrows.div_ceil(ROWS_PER_BLOCK))
-        .into_par_iter()
-        .map_init(|| (scratch(), RowBuilder::default()), build_block)
-        .collect();
+    let blocks: Vec<Result<Block, E>> = parallel::map_with(
+        nrows.div_ceil(ROWS_PER_BLOCK),
+        || (scratch(), RowBuilder::default()),
+        build_block,
+    );
     let blocks = blocks.into_iter().collect::<Result<Vec<_>, E>>()?;
     Ok(join(nrows, ncols, &blocks))
 }
@@ -138,10 +139,13 @@ pub(crate) fn joined(nrows: usize, ncols: usize, parts: Vec<(&[usize], &[u32], &
         rest_values = others;
         places.push((own_indices, columns, own_values, row));
     }
-    places.into_par_iter().for_each(|(own_indices, columns, own_values, row)| {
-        own_indices.copy_from_slice(columns);
-        own_values.copy_from_slice(row);
-    });
+    parallel::for_each_task(
+        places,
+        |(own_indices, columns, own_values, row): (&mut [u32], &[u32], &mut [f64], &[f64])| {
+            own_indices.copy_from_slice(columns);
+            own_values.copy_from_slice(row);
+        },
+    );
     Csr::from_trusted(ncols, offsets, indices, values)
 }
 
@@ -172,7 +176,7 @@ impl Csr {
     ///
     /// # Errors
     /// Those of the closure and those of [`Csr::from_rows`]; of several, the one of the lowest row.
-    pub fn try_from_rows<S, E: From<MatrixError> + Send>(
+    pub fn try_from_rows<S: Send, E: From<MatrixError> + Send>(
         nrows: usize,
         ncols: usize,
         scratch: impl Fn() -> S + Sync,

@@ -7,7 +7,7 @@ mod transform;
 
 pub use build::RowBuilder;
 pub(crate) use build::{build_rows, joined};
-pub(crate) use multiply::computed_rows;
+pub(crate) use multiply::{LooseRows, computed_rows};
 pub(crate) use product::{for_each_row, for_each_row_of};
 
 use crate::error::MatrixError;

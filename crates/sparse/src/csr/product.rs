@@ -1,7 +1,7 @@
 //! Products with vectors, in parallel over blocks of rows.
 
 use super::Csr;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Rows that one task works through. A row's result does not depend on it.
 const ROWS_PER_TASK: usize = 2048;
@@ -15,7 +15,7 @@ pub(crate) fn for_each_row(y: &mut [f64], f: impl Fn(usize, &mut f64) + Sync) {
         }
         return;
     }
-    y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, y)| {
+    parallel::for_each_part(y, ROWS_PER_TASK, &|task, y| {
         for (k, y) in y.iter_mut().enumerate() {
             f(task * ROWS_PER_TASK + k, y);
         }
@@ -33,7 +33,7 @@ pub(crate) fn for_each_row_of(offsets: &[usize], entries: &mut [f64], f: impl Fn
         rest = others;
         parts.push((first..last, own));
     }
-    parts.into_par_iter().for_each(|(rows, own)| {
+    parallel::for_each_task(parts, |(rows, own)| {
         let start = offsets[rows.start];
         for i in rows {
             f(i, &mut own[offsets[i] - start..offsets[i + 1] - start]);

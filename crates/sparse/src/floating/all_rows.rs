@@ -3,7 +3,7 @@
 use super::bordered::Bordered;
 use super::joined::{Equations, take_extra};
 use crate::precond::Preconditioner;
-use crate::solver::{AUTO_RESTART, Levels, LinearOperator, Method, PATIENCE, Residuals, iterate};
+use crate::solver::{AUTO_RESTART, LinearOperator, Method, PATIENCE, Residuals, iterate};
 use crate::solver::{SolveError, SolveInfo, SolverParams};
 
 pub(super) const METHOD: Method = Method::Gmres { restart: AUTO_RESTART };
@@ -11,7 +11,8 @@ pub(super) const METHOD: Method = Method::Gmres { restart: AUTO_RESTART };
 /// All equations, their rows scaled, in `s w` and, at the pinned nodes, the extra unknowns.
 pub(super) struct AllRows<'a> {
     pub(super) system: &'a Bordered,
-    pub(super) levels: &'a Levels<'a>,
+    /// What the rows are multiplied by.
+    pub(super) factors: &'a [f64],
     /// `y = A x`
     pub(super) product: &'a (dyn Fn(&[f64], &mut [f64]) + Sync),
 }
@@ -27,7 +28,7 @@ impl AllRows<'_> {
         rhs: &[f64],
         params: &SolverParams,
     ) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
-        let b: Vec<f64> = rhs.iter().zip(self.levels.factors).map(|(b, f)| b * f).collect();
+        let b: Vec<f64> = rhs.iter().zip(self.factors).map(|(b, f)| b * f).collect();
         let patient = SolverParams { max_iterations: params.max_iterations.min(PATIENCE), ..*params };
         let (mut x, info) = iterate(METHOD, self, preconditioner, &b, &patient)?;
         let extra = take_extra(self.system, &mut x);
@@ -36,7 +37,7 @@ impl AllRows<'_> {
     }
 
     fn equations(&self) -> Equations<'_> {
-        Equations { system: self.system, factors: self.levels.factors, scaled: true }
+        Equations { system: self.system, factors: self.factors, scaled: true }
     }
 }
 

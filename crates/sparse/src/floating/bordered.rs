@@ -5,7 +5,8 @@ use super::split::Split;
 use crate::csr::{Csr, for_each_row};
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
-use crate::solver::{SolveError, SolveInfo, SolverParams, reciprocal_power};
+use crate::solver::{SolveError, SolveInfo, SolverParams};
+use std::sync::Arc;
 
 /// `A w + B c = b` in `n` equations for `n` values `w` and `m` extra unknowns `c`, where `w = 0` at `m` pinned nodes.
 ///
@@ -18,7 +19,7 @@ use crate::solver::{SolveError, SolveInfo, SolverParams, reciprocal_power};
 /// `g`. `A` is kept in difference form, so that residuals are accurate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bordered {
-    matrix: DifferenceMatrix,
+    matrix: Arc<DifferenceMatrix>,
     /// Entries of each column of `B`: row, value.
     columns: Vec<Vec<(u32, f64)>>,
     pinned: Vec<u32>,
@@ -47,11 +48,12 @@ impl Bordered {
     /// # Errors
     /// Lengths that do not fit, rows out of range, a node pinned twice, numbers that are not finite.
     pub fn new(
-        matrix: DifferenceMatrix,
+        matrix: impl Into<Arc<DifferenceMatrix>>,
         columns: Vec<Vec<(u32, f64)>>,
         pinned: Vec<u32>,
         rhs: Vec<f64>,
     ) -> Result<Self, MatrixError> {
+        let matrix = matrix.into();
         MatrixError::check_length("right-hand side", rhs.len(), matrix.n())?;
         MatrixError::check_finite("right-hand side", &rhs)?;
         MatrixError::check_length("pinned nodes", pinned.len(), columns.len())?;
@@ -179,13 +181,12 @@ impl Bordered {
     /// Powers of two by which rows are multiplied for their entries to count alike, those of the nodes as they act on `w`:
     /// in stiff regions they would count for nothing otherwise.
     pub(super) fn factors(&self) -> Vec<f64> {
-        let mut factors = vec![0.0; self.n()];
-        for_each_row(&mut factors, |i, factor| {
-            let entries = self.matrix.row(i).1.iter();
-            let largest = entries.fold(self.matrix.diagonal(i).abs(), |m: f64, v| m.max(v.abs()));
-            *factor = if largest > 0.0 { reciprocal_power(largest) } else { 1.0 };
-        });
-        factors
+        self.matrix.balancing_factors()
+    }
+
+    /// The matrix `A`, to be shared.
+    pub(super) fn shared_matrix(&self) -> Arc<DifferenceMatrix> {
+        Arc::clone(&self.matrix)
     }
 
     /// The extra unknown for which a node is pinned, by node.

@@ -10,7 +10,7 @@ use super::bordered::Bordered;
 use super::dense::DenseLu;
 use crate::multigrid::Multigrid;
 use crate::precond::Preconditioner;
-use crate::solver::{Levels, PATIENCE, SolveError, SolveInfo, SolverParams, iterate};
+use crate::solver::{Levels, LinearOperator, PATIENCE, SolveError, SolveInfo, SolverParams, iterate};
 use crate::vector::axpy;
 
 /// Residual to which the responses are solved for. They only precondition: with 1e-2 the coupled iteration takes as many
@@ -41,9 +41,11 @@ impl Coupled {
         let mut products = 0;
         for (k, column) in system.columns().iter().enumerate() {
             let mut b = vec![0.0; system.n()];
-            column.iter().for_each(|&(row, value)| b[row as usize] += value * levels.factors[row as usize]);
+            column
+                .iter()
+                .for_each(|&(row, value)| b[row as usize] += value * levels.rows.factors[row as usize]);
             system.pinned().iter().for_each(|&p| b[p as usize] = 0.0);
-            let (mut x, info) = iterate(METHOD, levels.matrix, levels.multigrid, &b, &rough)?;
+            let (mut x, info) = iterate(METHOD, &levels.rows, levels.multigrid, &b, &rough)?;
             system.unscale(&mut x);
             products += info.iterations;
             for (l, value) in system.border_rows(&x).into_iter().enumerate() {
@@ -66,20 +68,21 @@ impl Coupled {
         params: &SolverParams,
     ) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
         let product = |x: &[f64], y: &mut [f64]| self.multiply(system, levels, x, y);
-        let preconditioner = Arrow { system, factors: levels.factors, multigrid: levels.multigrid, of: self };
-        AllRows { system, levels, product: &product }.solve(&preconditioner, rhs, params)
+        let factors = levels.rows.factors;
+        let preconditioner = Arrow { system, factors, multigrid: levels.multigrid, of: self };
+        AllRows { system, factors, product: &product }.solve(&preconditioner, rhs, params)
     }
 
     /// `y = A x` for the coupled matrix, its rows scaled.
     fn multiply(&self, system: &Bordered, levels: &Levels<'_>, x: &[f64], y: &mut [f64]) {
-        levels.matrix.mul_vec(x, y);
+        levels.rows.apply(x, y);
         let pinned = system.pinned();
         for (l, &p) in pinned.iter().enumerate() {
             let (columns, values) = system.matrix().row(p as usize);
             let nodes = columns.iter().zip(values).filter(|(j, _)| !pinned.contains(j));
             let sum: f64 = nodes.map(|(&j, a)| a * system.inverse_scale(j as usize) * x[j as usize]).sum();
             let border: f64 = pinned.iter().zip(&self.corner[l]).map(|(&q, d)| d * x[q as usize]).sum();
-            y[p as usize] = levels.factors[p as usize] * (sum + border);
+            y[p as usize] = levels.rows.factors[p as usize] * (sum + border);
         }
     }
 }

@@ -35,7 +35,10 @@ impl Eliminated {
     /// # Errors
     /// Those of [`Prepared`], and [`SolveError::Undetermined`].
     pub(super) fn new(system: &Bordered, params: &SolverParams) -> Result<Self, SolveError> {
-        let prepared = Prepared::new(&system.pinned_matrix(), params)?;
+        let prepared = match system.extra() {
+            0 => Prepared::of_rows(system.shared_matrix(), params)?,
+            _ => Prepared::new(&system.pinned_matrix(), params)?,
+        };
         let factors = if system.extra() > 0 { system.factors() } else { Vec::new() };
         let mut schur = system.corner();
         let (mut responses, mut columns) = (Vec::new(), Vec::new());

@@ -10,11 +10,10 @@ use super::all_rows::AllRows;
 use super::bordered::Bordered;
 use super::joined::take_extra;
 use super::split::Split;
-use crate::csr::Csr;
-use crate::error::MatrixError;
-use crate::multigrid::Multigrid;
+use crate::csr::for_each_row;
+use crate::multigrid::{HierarchyInfo, Multigrid, Scaling};
 use crate::precond::Preconditioner;
-use crate::solver::{Levels, SolveError, SolveInfo, SolverParams};
+use crate::solver::{SolveError, SolveInfo, SolverParams, levels_of};
 
 /// The smallest scale for which rounding leaves the preconditioner three digits.
 const LEAST_SCALE: f64 = 1e-13;
@@ -24,43 +23,55 @@ pub(super) fn split(system: &Bordered) -> Option<&Split> {
     system.split().filter(|_| system.scales().iter().all(|&s| s >= LEAST_SCALE))
 }
 
-/// The matrix as it acts on u: entries in `s w` and in u are the same, as both are columns divided by `s`.
-///
-/// # Errors
-/// [`MatrixError::NotFinite`] where an entry overflows.
-pub(super) fn matrix(system: &Bordered) -> Result<Csr, MatrixError> {
-    let inverse: Vec<f64> = (0..system.n()).map(|i| system.inverse_scale(i)).collect();
-    system.matrix().to_csr().columns_scaled(&inverse)
+/// Levels for the matrix as it acts on u, which share the rows of the system.
+#[derive(Debug)]
+pub(super) struct Nodal {
+    multigrid: Multigrid,
+    /// What the rows are multiplied by.
+    factors: Vec<f64>,
 }
 
-/// `w` and `c` for a right-hand side.
-///
-/// # Errors
-/// [`SolveError::NoConvergence`] where the iteration stagnates.
-pub(super) fn solve(
-    system: &Bordered,
-    split: &Split,
-    levels: &Levels<'_>,
-    rhs: &[f64],
-    params: &SolverParams,
-) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
-    let product = |x: &[f64], y: &mut [f64]| multiply(system, levels, x, y);
-    AllRows { system, levels, product: &product }.solve(
-        &Apart { split, multigrid: levels.multigrid },
-        rhs,
-        params,
-    )
-}
+impl Nodal {
+    /// # Errors
+    /// Those of [`Multigrid::new`].
+    pub(super) fn new(system: &Bordered, params: &SolverParams) -> Result<Self, SolveError> {
+        let factors = system.factors();
+        let scaling = Scaling { rows: factors.clone(), unknowns: system.scales().to_vec() };
+        let multigrid = Multigrid::of(system.shared_matrix(), None, scaling, &levels_of(params))?;
+        Ok(Self { multigrid, factors })
+    }
 
-/// `y = A x` for all equations, their rows scaled.
-fn multiply(system: &Bordered, levels: &Levels<'_>, x: &[f64], y: &mut [f64]) {
-    // The constants stand where `s w` is zero.
-    let mut own = x.to_vec();
-    let extra = take_extra(system, &mut own);
-    levels.matrix.mul_vec(&own, y);
-    for (c, column) in extra.iter().zip(system.columns()) {
-        for &(i, v) in column {
-            y[i as usize] += levels.factors[i as usize] * v * c;
+    pub(super) fn hierarchy(&self) -> &HierarchyInfo {
+        self.multigrid.info()
+    }
+
+    /// `w` and `c` for a right-hand side.
+    ///
+    /// # Errors
+    /// [`SolveError::NoConvergence`] where the iteration stagnates.
+    pub(super) fn solve(
+        &self,
+        system: &Bordered,
+        split: &Split,
+        rhs: &[f64],
+        params: &SolverParams,
+    ) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
+        let product = |x: &[f64], y: &mut [f64]| self.multiply(system, x, y);
+        let preconditioner = Apart { split, multigrid: &self.multigrid };
+        AllRows { system, factors: &self.factors, product: &product }.solve(&preconditioner, rhs, params)
+    }
+
+    /// `y = A x` for all equations, their rows scaled.
+    fn multiply(&self, system: &Bordered, x: &[f64], y: &mut [f64]) {
+        // The constants stand where `s w` is zero.
+        let mut w = x.to_vec();
+        let extra = take_extra(system, &mut w);
+        system.unscale(&mut w);
+        for_each_row(y, |i, y| *y = self.factors[i] * system.matrix().row_product(i, &w));
+        for (c, column) in extra.iter().zip(system.columns()) {
+            for &(i, v) in column {
+                y[i as usize] += self.factors[i as usize] * v * c;
+            }
         }
     }
 }

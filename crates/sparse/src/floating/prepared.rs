@@ -5,12 +5,13 @@ use super::coupled::Coupled;
 use super::direct::Direct;
 use super::eliminated::Eliminated;
 use super::joined::{self, PinnedRows};
-use super::nodal;
+use super::nodal::{self, Nodal};
+use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
 use crate::multigrid::HierarchyInfo;
 use crate::precond::PreconditionerKind;
 use crate::solver::{AUTO_DIRECT_MAX, Prepared, SolveError, SolverKind, SolverParams};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// A [`Bordered`] system with what is computed once for all right-hand sides.
 ///
@@ -27,7 +28,7 @@ pub struct PreparedBordered {
     params: SolverParams,
     coupled: Option<(Prepared, Coupled)>,
     /// Multigrid in nodal values, instead of `coupled`.
-    nodal: Option<Prepared>,
+    nodal: Option<Nodal>,
     /// Made when they are needed.
     eliminated: OnceLock<Eliminated>,
     direct: OnceLock<Direct>,
@@ -60,8 +61,12 @@ impl PreparedBordered {
                 direct => new.direct = OnceLock::from(direct?),
             },
             SolverKind::Multigrid if nodal::split(&new.system).is_some() => {
-                let matrix = nodal::matrix(&new.system)?;
-                new.nodal = Some(Prepared::multigrid(&matrix, new.system.factors(), &params)?);
+                match Nodal::new(&new.system, &params) {
+                    Ok(nodal) => new.nodal = Some(nodal),
+                    // A coarsest level that cannot be factorised, or whose entries overflow.
+                    Err(SolveError::Singular { .. } | SolveError::Matrix(_)) => new.step_in()?,
+                    Err(error) => return Err(error),
+                }
             }
             SolverKind::Multigrid => {
                 new.coupled = coupled(&new.system, &params)?;
@@ -88,7 +93,7 @@ impl PreparedBordered {
         match &self.coupled {
             Some((prepared, _)) => prepared.hierarchy(),
             None => match &self.nodal {
-                Some(prepared) => prepared.hierarchy(),
+                Some(nodal) => Some(nodal.hierarchy()),
                 None => self.eliminated.get().and_then(Eliminated::hierarchy),
             },
         }
@@ -111,10 +116,8 @@ impl PreparedBordered {
         {
             return Ok(BorderedSolution { values, extra, info });
         }
-        if let (Some(prepared), Some(split), None) =
-            (&self.nodal, nodal::split(system), self.eliminated.get())
-            && let Some(levels) = prepared.levels()
-            && let Ok((values, extra, info)) = nodal::solve(system, split, &levels, rhs, &self.params)
+        if let (Some(nodal), Some(split), None) = (&self.nodal, nodal::split(system), self.eliminated.get())
+            && let Ok((values, extra, info)) = nodal.solve(system, split, rhs, &self.params)
         {
             return Ok(BorderedSolution { values, extra, info });
         }
@@ -168,7 +171,8 @@ impl PreparedBordered {
 /// `None` where multigrid does not find the responses.
 fn coupled(system: &Bordered, params: &SolverParams) -> Result<Option<(Prepared, Coupled)>, SolveError> {
     let matrix = joined::matrix(system, PinnedRows::Identity, |j| system.inverse_scale(j));
-    let prepared = Prepared::multigrid(&matrix, system.factors(), params)?;
+    let rows = Arc::new(DifferenceMatrix::from_csr(&matrix)?);
+    let prepared = Prepared::multigrid(rows, Some(system.factors()), params)?;
     let coupled = prepared.levels().and_then(|levels| Coupled::new(system, &levels).ok());
     Ok(coupled.map(|coupled| (prepared, coupled)))
 }

@@ -1,8 +1,8 @@
 //! Aggregates: the unknowns of the next level.
 
 use super::strength::Graph;
-use crate::csr::Csr;
-use rayon::prelude::*;
+use crate::difference::DifferenceMatrix;
+use crate::parallel;
 
 /// In no aggregate.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -21,15 +21,15 @@ const BLOCK: usize = 65_536;
 /// Standard aggregation (Vaněk, Mandel and Brezina, Computing 56, 1996, algorithm 2): nodes in order found an aggregate
 /// with all their strong neighbours if these are still free; what is left joins the aggregate to which it is tied most;
 /// the rest founds aggregates with the free neighbours it has. Nodes whose bonds are strong one way only, or not at all,
-/// join that of their largest entry; settled ones stay out.
-pub(crate) fn standard(a: &Csr, graph: &Graph) -> Aggregates {
+/// join that of their largest entry, with columns measured in `units`; settled ones stay out.
+pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Graph) -> Aggregates {
     let (founded, mut count) = founded(graph, BLOCK);
     let join = |i: usize| {
         let tied = graph.of(i).filter(|(j, _)| founded[*j] != NONE);
         let own = Some(founded[i]).filter(|&k| k != NONE);
         own.or_else(|| tied.fold(None, stronger).map(|(j, _)| founded[j])).unwrap_or(NONE)
     };
-    let mut of: Vec<u32> = (0..graph.len()).into_par_iter().with_min_len(4096).map(join).collect();
+    let mut of: Vec<u32> = parallel::map_rows(graph.len(), join);
     for i in 0..of.len() {
         if of[i] == NONE && !graph.neighbors(i).is_empty() {
             of[i] = count;
@@ -41,37 +41,40 @@ pub(crate) fn standard(a: &Csr, graph: &Graph) -> Aggregates {
             count += 1;
         }
     }
-    adopt(a, graph, &mut of, &mut count);
+    adopt(a, units, graph, &mut of, &mut count);
     Aggregates { of, count: count as usize }
 }
 
 /// The aggregates of nodes with all their strong neighbours, block by block in parallel, and how many these are.
 pub(super) fn founded(graph: &Graph, block: usize) -> (Vec<u32>, u32) {
     let mut of = vec![NONE; graph.len()];
-    let in_block = |(k, of): (usize, &mut [u32])| {
-        let first = k * block;
-        let mut count: u32 = 0;
-        for i in 0..of.len() {
-            let neighbors = graph.neighbors(first + i);
-            let place = |j: u32| (j as usize).wrapping_sub(first);
-            let free = |&j: &u32| of.get(place(j)) == Some(&NONE);
-            if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(free) {
-                of[i] = count;
-                neighbors.iter().for_each(|&j| of[place(j)] = count);
-                count += 1;
+    let mut counts = vec![0; of.len().div_ceil(block)];
+    parallel::for_each_task(
+        of.chunks_mut(block).zip(&mut counts).enumerate().collect(),
+        |(k, (of, counted))| {
+            let first = k * block;
+            let mut count: u32 = 0;
+            for i in 0..of.len() {
+                let neighbors = graph.neighbors(first + i);
+                let place = |j: u32| (j as usize).wrapping_sub(first);
+                let free = |&j: &u32| of.get(place(j)) == Some(&NONE);
+                if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(free) {
+                    of[i] = count;
+                    neighbors.iter().for_each(|&j| of[place(j)] = count);
+                    count += 1;
+                }
             }
-        }
-        count
-    };
-    let counts: Vec<u32> = of.par_chunks_mut(block).enumerate().map(in_block).collect();
+            *counted = count;
+        },
+    );
     let before = counts.iter().scan(0, |sum, count| {
         *sum += count;
         Some(*sum - count)
     });
     let before: Vec<u32> = before.collect();
-    of.par_chunks_mut(block).zip(&before).for_each(|(of, before)| {
+    for (of, before) in of.chunks_mut(block).zip(&before) {
         of.iter_mut().filter(|k| **k != NONE).for_each(|k| *k += before);
-    });
+    }
     (of, counts.iter().sum())
 }
 
@@ -82,10 +85,17 @@ fn stronger(best: Option<(usize, f64)>, next: (usize, f64)) -> Option<(usize, f6
 
 /// Gives nodes without strong neighbours to the aggregate of the largest entry of their row that has the right sign, from
 /// the aggregates outwards; where no such entry leads to an aggregate, they are aggregates of their own.
-pub(crate) fn adopt(a: &Csr, graph: &Graph, of: &mut [u32], count: &mut u32) {
+pub(crate) fn adopt(
+    a: &DifferenceMatrix,
+    units: Option<&[f64]>,
+    graph: &Graph,
+    of: &mut [u32],
+    count: &mut u32,
+) {
     let mut left: Vec<usize> = (0..of.len()).filter(|&i| of[i] == NONE && !graph.settled[i]).collect();
     while !left.is_empty() {
-        let found: Vec<(usize, u32)> = left.iter().filter_map(|&i| Some((i, nearest(a, of, i)?))).collect();
+        let found: Vec<(usize, u32)> =
+            left.iter().filter_map(|&i| Some((i, nearest(a, units, of, i)?))).collect();
         if found.is_empty() {
             for &i in &left {
                 of[i] = *count;
@@ -98,10 +108,11 @@ pub(crate) fn adopt(a: &Csr, graph: &Graph, of: &mut [u32], count: &mut u32) {
     }
 }
 
-fn nearest(a: &Csr, of: &[u32], i: usize) -> Option<u32> {
-    let diagonal = a.get(i, i);
+fn nearest(a: &DifferenceMatrix, units: Option<&[f64]>, of: &[u32], i: usize) -> Option<u32> {
+    let diagonal = a.diagonal(i);
     let (columns, values) = a.row(i);
-    let entries = columns.iter().zip(values).map(|(&j, v)| (j as usize, -v / diagonal));
-    let tied = entries.filter(|(j, s)| *j != i && *s > 0.0 && of[*j] != NONE);
+    let unit = |j: u32| units.map_or(1.0, |c| c[j as usize]);
+    let entries = columns.iter().zip(values).map(|(&j, v)| (j as usize, -v * unit(j) / diagonal));
+    let tied = entries.filter(|(j, s)| *s > 0.0 && of[*j] != NONE);
     tied.fold(None, stronger).map(|(j, _)| of[j])
 }

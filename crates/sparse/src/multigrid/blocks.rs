@@ -2,8 +2,8 @@
 
 use crate::csr::{Csr, computed_rows};
 use crate::error::MatrixError;
+use crate::parallel;
 use crate::precond::{IncompleteLu, Preconditioner, ilu0};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Rows of a block: enough for what couples blocks to be a small part, few enough for several threads to have blocks. Blocks
@@ -28,11 +28,11 @@ struct Block {
 
 impl BlockIlu {
     pub(crate) fn new(a: &Csr) -> Result<Self, MatrixError> {
-        let blocks = (0..a.nrows().div_ceil(BLOCK)).into_par_iter().map(|k| {
+        let blocks = parallel::map(a.nrows().div_ceil(BLOCK), |k| {
             let first = k * BLOCK;
             Block::new(a, first..a.nrows().min(first + BLOCK))
         });
-        Ok(Self { blocks: blocks.collect::<Result<_, _>>()? })
+        Ok(Self { blocks: blocks.into_iter().collect::<Result<_, _>>()? })
     }
 
     pub(crate) fn bytes(&self) -> usize {
@@ -41,8 +41,7 @@ impl BlockIlu {
 
     /// `z = M^-1 r`
     pub(crate) fn apply(&self, r: &[f64], z: &mut [f64]) {
-        let blocks = z.par_chunks_mut(BLOCK).zip(&self.blocks).enumerate();
-        blocks.for_each(|(k, (z, block))| block.apply(r, k * BLOCK, z));
+        parallel::for_each_part(z, BLOCK, &|k, z| self.blocks[k].apply(r, k * BLOCK, z));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Chebyshev smoothing.
 
-use crate::csr::{Csr, for_each_row};
+use crate::csr::for_each_row;
+use crate::difference::DifferenceMatrix;
 use crate::vector::{axpy, mixed_bit, norm};
 
 /// Degree of the polynomial.
@@ -23,8 +24,8 @@ pub(crate) struct Chebyshev {
 }
 
 impl Chebyshev {
-    pub(crate) fn new(a: &Csr, inverse: Vec<f64>) -> Self {
-        let n = a.nrows();
+    pub(crate) fn new(a: &DifferenceMatrix, inverse: Vec<f64>) -> Self {
+        let n = a.n();
         let mut x: Vec<f64> = (0..n as u64).map(|i| if mixed_bit(i) { 1.0 } else { -1.0 }).collect();
         let mut y = vec![0.0; n];
         let mut largest = 1.0;
@@ -48,7 +49,7 @@ impl Chebyshev {
 
     /// `x += p(D^-1 A) D^-1 (b - A x)` (Saad, "Iterative methods for sparse linear systems", algorithm 12.1). `t` has twice
     /// the length of `x`.
-    pub(crate) fn sweep(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64]) {
+    pub(crate) fn sweep(&self, a: &DifferenceMatrix, b: &[f64], x: &mut [f64], t: &mut [f64]) {
         let (r, d) = t.split_at_mut(x.len());
         let (theta, delta) = (0.5 * (1.0 + LOWEST) * self.largest, 0.5 * (1.0 - LOWEST) * self.largest);
         let sigma = theta / delta;

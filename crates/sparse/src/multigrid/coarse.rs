@@ -4,6 +4,7 @@ use super::SmootherKind;
 use super::smoother::Smoother;
 use super::strength;
 use crate::csr::Csr;
+use crate::difference::DifferenceMatrix;
 use crate::solver::{Factors, Scaled, SolveError};
 use std::sync::Arc;
 
@@ -23,7 +24,7 @@ pub(crate) enum Coarse {
     /// By the factors of its matrix.
     Factored(Scaled, Factors),
     /// By Gauss-Seidel: a level that is still large because nothing in it needs a coarser one, as in short time steps.
-    Relaxed(Arc<Csr>, Smoother),
+    Relaxed(Arc<DifferenceMatrix>, Smoother),
 }
 
 impl Coarse {
@@ -36,12 +37,13 @@ impl Coarse {
     /// Factorises the matrix, unless it has more than `small` unknowns and relaxation solves it. A connected part that has only
     /// the constant as its null space gets a multiple of the matrix of ones added, which makes it regular and changes
     /// nothing for right-hand sides that have a solution; any other singular matrix is shifted.
-    pub(crate) fn new(a: &Arc<Csr>, row_sums: &[f64], small: usize) -> Result<Self, SolveError> {
-        if a.nrows() > small && strength::all_settled(a) {
+    pub(crate) fn new(a: &Arc<DifferenceMatrix>, small: usize) -> Result<Self, SolveError> {
+        if a.n() > small && strength::all_settled(a) {
             return Ok(Self::Relaxed(Arc::clone(a), Smoother::new(SmootherKind::GaussSeidel, a)?));
         }
-        let floating = floating_parts(a, row_sums);
-        let a = if floating.is_empty() { Csr::clone(a) } else { with_ones(a, &floating)? };
+        let floating = floating_parts(a);
+        let a = a.to_csr();
+        let a = if floating.is_empty() { a } else { with_ones(&a, &floating)? };
         match Factors::new(&a) {
             Ok((scaled, factors)) => Ok(Self::Factored(scaled, factors)),
             Err(SolveError::Singular { .. } | SolveError::EmptyRow { .. }) => {
@@ -69,9 +71,9 @@ impl Coarse {
 }
 
 /// Connected parts of the matrix without any row sum.
-fn floating_parts(a: &Csr, row_sums: &[f64]) -> Vec<Vec<u32>> {
-    let n = a.nrows();
-    let reverse = a.transpose();
+fn floating_parts(a: &DifferenceMatrix) -> Vec<Vec<u32>> {
+    let n = a.n();
+    let reverse = a.off_diagonal().transpose();
     let mut seen = vec![false; n];
     let mut parts = Vec::new();
     for start in 0..n {
@@ -84,8 +86,8 @@ fn floating_parts(a: &Csr, row_sums: &[f64]) -> Vec<Vec<u32>> {
         while next < part.len() {
             let i = part[next] as usize;
             next += 1;
-            let size = a.row(i).1.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            held |= row_sums[i].abs() > NO_ROW_SUM * size;
+            let size = a.row(i).1.iter().fold(a.diagonal(i).abs(), |m, v| m.max(v.abs()));
+            held |= a.row_sum(i).abs() > NO_ROW_SUM * size;
             for (columns, values) in [a.row(i), reverse.row(i)] {
                 for (&j, &v) in columns.iter().zip(values) {
                     if v != 0.0 && !std::mem::replace(&mut seen[j as usize], true) {

@@ -1,7 +1,7 @@
 //! Gauss-Seidel by colours.
 
-use crate::csr::Csr;
-use rayon::prelude::*;
+use crate::difference::DifferenceMatrix;
+use crate::parallel;
 
 /// Rows that one task works through.
 const ROWS_PER_TASK: usize = 1024;
@@ -15,9 +15,9 @@ pub(crate) struct Colored {
 
 impl Colored {
     /// Colours greedily, in the order of the rows.
-    pub(crate) fn new(a: &Csr, inverse: Vec<f64>) -> Self {
-        let n = a.nrows();
-        let reverse = a.transpose();
+    pub(crate) fn new(a: &DifferenceMatrix, inverse: Vec<f64>) -> Self {
+        let n = a.n();
+        let reverse = a.off_diagonal().transpose();
         let mut color = vec![usize::MAX; n];
         let mut colors: Vec<Vec<u32>> = Vec::new();
         let mut taken: Vec<usize> = Vec::new();
@@ -42,17 +42,22 @@ impl Colored {
         size_of_val(&*self.inverse) + self.colors.iter().map(|c| size_of_val(&**c)).sum::<usize>()
     }
 
-    pub(crate) fn sweep(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64], backward: bool) {
+    pub(crate) fn sweep(
+        &self,
+        a: &DifferenceMatrix,
+        b: &[f64],
+        x: &mut [f64],
+        t: &mut [f64],
+        backward: bool,
+    ) {
         for k in 0..self.colors.len() {
             let rows = &self.colors[if backward { self.colors.len() - 1 - k } else { k }];
             let new = &mut t[..rows.len()];
             let old = &*x;
-            new.par_chunks_mut(ROWS_PER_TASK).zip(rows.par_chunks(ROWS_PER_TASK)).for_each(|(new, rows)| {
-                for (new, &i) in new.iter_mut().zip(rows) {
+            parallel::for_each_part(new, ROWS_PER_TASK, &|task, new| {
+                for (new, &i) in new.iter_mut().zip(&rows[task * ROWS_PER_TASK..]) {
                     let i = i as usize;
-                    let (columns, values) = a.row(i);
-                    let r = columns.iter().zip(values).fold(b[i], |r, (&j, v)| r - v * old[j as usize]);
-                    *new = old[i] + r * self.inverse[i];
+                    *new = old[i] + (b[i] - a.row_product(i, old)) * self.inverse[i];
                 }
             });
             rows.iter().zip(&*new).for_each(|(&i, &new)| x[i as usize] = new);

@@ -11,7 +11,7 @@ impl Multigrid {
     /// Elements of scratch for the levels from `level` on.
     pub(super) fn scratch_from(&self, level: usize) -> usize {
         let Some(this) = self.levels.get(level) else { return 0 };
-        let (n, coarse) = (this.a.nrows(), this.p.ncols());
+        let (n, coarse) = (this.a.n(), this.p.ncols());
         let vectors = match self.params.cycle {
             CycleKind::V => 0,
             CycleKind::W => 2,
@@ -23,7 +23,7 @@ impl Multigrid {
     /// One cycle for `A_level x = b` from `x = 0`.
     pub(super) fn cycle(&self, level: usize, b: &[f64], x: &mut [f64], scratch: &mut [f64]) {
         let Some(this) = self.levels.get(level) else { return self.coarse.solve(b, x) };
-        let (n, coarse) = (this.a.nrows(), this.p.ncols());
+        let (n, coarse) = (this.a.n(), this.p.ncols());
         let (t, scratch) = scratch.split_at_mut(this.smoother.scratch_len(n));
         let (b_coarse, scratch) = scratch.split_at_mut(coarse);
         let (x_coarse, scratch) = scratch.split_at_mut(coarse);

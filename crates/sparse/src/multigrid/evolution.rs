@@ -2,13 +2,16 @@
 
 use super::strength::Graph;
 use crate::csr::Csr;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Damping of the relaxation that spreads the source.
 const DAMPING: f64 = 2.0 / 3.0;
 
 /// How much worse than the best neighbour a strong one may be (4 in PyAMG, after Olson, Schroder and Tuminaro 2010).
 const SLACK: f64 = 4.0;
+
+/// Rows that one task works through.
+const ROWS_PER_TASK: usize = 4096;
 
 /// What stands for a perfect match, so that strengths are finite.
 const PERFECT: f64 = 1e-12;
@@ -45,8 +48,14 @@ pub(crate) fn evolution(a: &Csr, base: &Graph) -> Graph {
         sources.iter().for_each(|&k| source[k as usize] = 0.0);
         errors
     };
-    let rows: Vec<Vec<(u32, f64)>> =
-        (0..n).into_par_iter().with_min_len(4096).map_init(|| vec![0.0; n], row).collect();
+    let rows_of = |source: &mut Vec<f64>, task: usize| -> Vec<Vec<(u32, f64)>> {
+        let rows = task * ROWS_PER_TASK..n.min((task + 1) * ROWS_PER_TASK);
+        rows.map(|i| row(source, i)).collect()
+    };
+    let rows: Vec<Vec<(u32, f64)>> = parallel::map_with(n.div_ceil(ROWS_PER_TASK), || vec![0.0; n], rows_of)
+        .into_iter()
+        .flatten()
+        .collect();
     let back = |i: usize, j: u32| {
         let found = rows[j as usize].binary_search_by_key(&(i as u32), |e| e.0);
         found.ok().map(|k| rows[j as usize][k].1)

@@ -2,30 +2,25 @@
 
 use super::aggregation::{Aggregates, NONE};
 use super::strength::Graph;
-use crate::csr::Csr;
-use rayon::prelude::*;
-
-/// Rows that one task works through.
-const ROWS_PER_TASK: usize = 4096;
+use crate::difference::DifferenceMatrix;
+use crate::parallel;
 
 /// Share of the unknowns above which they are not kept: then it is the kind of matrix, not an interface.
 const MOST: f64 = 0.3;
 
-/// The rows whose other entries add up to more than `keep` diagonals; none if they are many.
-pub(crate) fn rows(a: &Csr, keep: f64) -> Vec<bool> {
-    let n = a.nrows();
+/// The rows whose other entries add up to more than `keep` diagonals, in values of which the unknowns are the parts `s`; none if
+/// they are many.
+pub(crate) fn rows(a: &DifferenceMatrix, s: &[f64], keep: f64) -> Vec<bool> {
+    let n = a.n();
     if keep == f64::INFINITY {
         return vec![false; n];
     }
-    let far = |i: usize| {
+    let inverse = |i: usize| s.get(i).map_or(1.0, |s| 1.0 / s);
+    let kept = parallel::map_rows(n, |i| {
         let (columns, values) = a.row(i);
-        let (mut diagonal, mut others) = (0.0_f64, 0.0);
-        for (&j, v) in columns.iter().zip(values) {
-            *(if j as usize == i { &mut diagonal } else { &mut others }) += v.abs();
-        }
-        others > keep * diagonal
-    };
-    let kept: Vec<bool> = (0..n).into_par_iter().with_min_len(ROWS_PER_TASK).map(far).collect();
+        let others: f64 = columns.iter().zip(values).map(|(&j, v)| v.abs() * inverse(j as usize)).sum();
+        others > keep * a.diagonal(i).abs() * inverse(i)
+    });
     let count = kept.iter().filter(|k| **k).count();
     if count as f64 > MOST * n as f64 { vec![false; n] } else { kept }
 }

@@ -23,17 +23,18 @@ mod strength;
 mod tests;
 
 use crate::csr::Csr;
+use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
 use crate::precond::Preconditioner;
 use crate::solver::SolveError;
 use coarse::Coarse;
 use frame::Frame;
+pub(crate) use frame::Scaling;
 pub use params::{
     Candidate, Coarsening, CycleKind, HierarchyInfo, MultigridParams, ProlongationKind, Restriction,
     SmootherKind, StrengthKind,
 };
 use smoother::Smoother;
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Levels at most; each has a fraction of the unknowns of the one before, so more are never reached.
@@ -44,7 +45,7 @@ const LEAST_COARSENING: f64 = 0.8;
 
 #[derive(Debug)]
 struct Level {
-    a: Arc<Csr>,
+    a: Arc<DifferenceMatrix>,
     p: Csr,
     r: Csr,
     smoother: Smoother,
@@ -73,38 +74,44 @@ impl Multigrid {
         weights: Option<&[f64]>,
         params: &MultigridParams,
     ) -> Result<Self, SolveError> {
-        params.check()?;
         matrix.require_square()?;
         if let Some(weights) = weights {
             MatrixError::check_length("weights of rows", weights.len(), matrix.nrows())?;
             MatrixError::check_finite("weight", weights)?;
         }
-        let mut multigrid = Self {
-            levels: Vec::new(),
-            coarse: Coarse::trivial()?,
-            frame: Frame::new(&matrix, params)?,
-            params: *params,
-            info: HierarchyInfo::default(),
-        };
-        let weights = multigrid.frame.weights(weights);
-        let matrix = multigrid.frame.matrix(matrix)?;
-        multigrid.info.levels.push((matrix.nrows(), matrix.nnz()));
-        multigrid.info.bytes = multigrid.frame.bytes();
-        let mut a = matrix;
-        let mut sums = galerkin::row_sums(&a, multigrid.frame.units());
-        let mut kept = kept::rows(&a, params.keep);
-        while a.nrows() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
-            let weights = weights.as_deref().filter(|_| multigrid.levels.is_empty());
-            let transfers = match multigrid.units() {
-                None => transfers(&a, weights, &mut kept, params)?,
-                Some(units) => transfers(&a.columns_scaled(units)?, weights, &mut kept, params)?
-                    .map(|(p, r)| p.row_scaled(units).map(|p| (p, r)))
-                    .transpose()?,
+        let rows = Arc::new(DifferenceMatrix::from_csr(&matrix)?);
+        Self::of(rows, weights, Scaling::default(), params)
+    }
+
+    /// For rows in difference form, which the levels share with whoever has them. What it preconditions is the scaled matrix; the
+    /// weights are those of the rows before that.
+    ///
+    /// # Errors
+    /// Those of [`Multigrid::new`].
+    pub(crate) fn of(
+        matrix: Arc<DifferenceMatrix>,
+        weights: Option<&[f64]>,
+        scaling: Scaling,
+        params: &MultigridParams,
+    ) -> Result<Self, SolveError> {
+        params.check()?;
+        let (frame, mut a) = Frame::new(matrix, scaling, params)?;
+        let coarse = Coarse::trivial()?;
+        let mut multigrid =
+            Self { levels: Vec::new(), coarse, frame, params: *params, info: HierarchyInfo::default() };
+        multigrid.start(&a);
+        let mut kept = multigrid.frame.kept(&a, params.keep);
+        while a.n() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
+            let finest = multigrid.levels.is_empty();
+            let units = multigrid.frame.units().filter(|_| finest);
+            let weights = multigrid.frame.weights(weights).filter(|_| finest);
+            let Some((p, r)) = transfers(&a, units.as_deref(), weights.as_deref(), &mut kept, params)? else {
+                break;
             };
-            let Some((p, r)) = transfers else { break };
-            (a, sums) = multigrid.add_level(a, &sums, p, r)?;
+            drop((units, weights));
+            a = multigrid.add_level(a, p, r)?;
         }
-        multigrid.coarse = Coarse::new(&a, &sums, params.coarsest)?;
+        multigrid.coarse = Coarse::new(&a, params.coarsest)?;
         Ok(multigrid)
     }
 
@@ -114,40 +121,43 @@ impl Multigrid {
     /// # Errors
     /// A matrix of another size; those of [`Multigrid::new`].
     pub fn refresh(&mut self, matrix: Arc<Csr>) -> Result<(), SolveError> {
-        matrix.require_square()?;
+        self.refresh_rows(Arc::new(DifferenceMatrix::from_csr(&matrix)?))
+    }
+
+    pub(crate) fn refresh_rows(&mut self, matrix: Arc<DifferenceMatrix>) -> Result<(), SolveError> {
         let n = self.info.levels.first().map_or(0, |l| l.0);
-        MatrixError::check_length("rows of the matrix", matrix.nrows(), n)?;
-        let matrix = self.frame.matrix(matrix)?;
+        MatrixError::check_length("rows of the matrix", matrix.n(), n)?;
+        let mut a = self.frame.matrix(matrix)?;
         let old = std::mem::take(&mut self.levels);
-        self.info = HierarchyInfo { levels: vec![(matrix.nrows(), matrix.nnz())], bytes: self.frame.bytes() };
-        let mut a = matrix;
-        let mut sums = galerkin::row_sums(&a, self.frame.units());
+        self.start(&a);
         for level in old {
-            (a, sums) = self.add_level(a, &sums, level.p, level.r)?;
+            a = self.add_level(a, level.p, level.r)?;
         }
-        self.coarse = Coarse::new(&a, &sums, self.params.coarsest)?;
+        self.coarse = Coarse::new(&a, self.params.coarsest)?;
         Ok(())
     }
 
-    /// What ones on the next level are on the one that is at hand, where that is not ones.
-    fn units(&self) -> Option<&[f64]> {
-        self.frame.units().filter(|_| self.levels.is_empty())
+    fn start(&mut self, a: &DifferenceMatrix) {
+        self.info = HierarchyInfo { levels: vec![(a.n(), a.nnz() + a.n())], bytes: self.frame.bytes() };
     }
 
     fn add_level(
         &mut self,
-        a: Arc<Csr>,
-        sums: &[f64],
+        a: Arc<DifferenceMatrix>,
         p: Csr,
         r: Csr,
-    ) -> Result<(Arc<Csr>, Vec<f64>), SolveError> {
-        let (coarse, sums) = galerkin::product(&a, sums, self.units(), &p, &r);
+    ) -> Result<Arc<DifferenceMatrix>, SolveError> {
+        let coarse = if self.levels.is_empty() {
+            galerkin::product(&a, &self.frame.row_sums(&a), self.frame.units().as_deref(), &p, &r)
+        } else {
+            galerkin::product(&a, a.row_sums(), None, &p, &r)
+        };
         coarse.require_finite()?;
         let smoother = Smoother::new(self.params.smoother, &a)?;
-        self.info.levels.push((coarse.nrows(), coarse.nnz()));
+        self.info.levels.push((coarse.n(), coarse.nnz() + coarse.n()));
         self.info.bytes += coarse.bytes() + p.bytes() + r.bytes() + smoother.bytes();
         self.levels.push(Level { a, p, r, smoother });
-        Ok((Arc::new(coarse), sums))
+        Ok(Arc::new(coarse))
     }
 
     /// The sizes of the levels.
@@ -158,71 +168,92 @@ impl Multigrid {
 }
 
 /// Prolongation and restriction to the next level; `None` where there is none that is worth having. Of a level that there is
-/// `kept` says which unknowns stay, before and after.
+/// `kept` says which unknowns stay, before and after. Coarse unknowns of 1 are `units`, where these are not ones.
 fn transfers(
-    a: &Csr,
+    a: &DifferenceMatrix,
+    units: Option<&[f64]>,
     weights: Option<&[f64]>,
     kept: &mut Vec<bool>,
     params: &MultigridParams,
 ) -> Result<Option<(Csr, Csr)>, SolveError> {
-    let symmetric = strength::symmetric(a, params.threshold);
+    let symmetric = strength::symmetric(a, units, params.threshold);
+    let unit = |j: usize| units.map_or(1.0, |c| c[j]);
     let graph = match params.strength {
         StrengthKind::Symmetric => symmetric,
-        StrengthKind::Evolution => evolution::evolution(a, &symmetric),
+        StrengthKind::Evolution => evolution::evolution(&a.scaled_csr(|_| 1.0, unit), &symmetric),
     };
-    let worth = |count: usize| count > 0 && count as f64 <= LEAST_COARSENING * a.nrows() as f64;
+    let worth = |count: usize| count > 0 && count as f64 <= LEAST_COARSENING * a.n() as f64;
     let p = match params.coarsening {
         Coarsening::SmoothedAggregation => {
             let graph = kept::without(graph, kept);
-            let mut aggregates = aggregation::standard(a, &graph);
+            let mut aggregates = aggregation::standard(a, units, &graph);
             *kept = kept::single_out(&mut aggregates, kept);
             if !worth(aggregates.count) {
                 return Ok(None);
             }
-            let smoothed = |a: &Csr| match params.prolongation {
-                ProlongationKind::Jacobi => Ok(prolongation::smoothed(a, &graph, &aggregates)),
-                ProlongationKind::EnergyMinimizing => energy::minimized(a, &graph, &aggregates),
-            };
             let own = params.restriction == Restriction::Own;
-            let balanced = own || params.prolongation == ProlongationKind::EnergyMinimizing;
-            let balances = match weights.filter(|_| balanced) {
-                Some(weights) => Cow::Owned(a.row_scaled(weights)?),
-                None => Cow::Borrowed(a),
-            };
-            let p = smoothed(&balances)?;
-            if own {
-                let left = smoothed(&balances.transpose())?;
-                return Ok(Some((p, restriction(&left, weights))));
+            let minimizing = params.prolongation == ProlongationKind::EnergyMinimizing;
+            if own || minimizing {
+                let weight = |i: usize| weights.map_or(1.0, |w| w[i]);
+                let balances = a.scaled_csr(weight, unit);
+                let smoothed = |balances: &Csr| match minimizing {
+                    true => energy::minimized(balances, &graph, &aggregates),
+                    false => {
+                        let rows = DifferenceMatrix::from_csr(balances)?;
+                        Ok(prolongation::smoothed(&rows, None, &graph, &aggregates))
+                    }
+                };
+                let p = smoothed(&balances)?;
+                if own {
+                    let left = smoothed(&balances.transpose())?;
+                    return Ok(Some((in_units(p, units), restriction(&left, weights))));
+                }
+                p
+            } else {
+                prolongation::smoothed(a, units, &graph, &aggregates)
             }
-            p
         }
         Coarsening::PairwiseAggregation => {
-            let aggregates = pairwise::pairwise(a, &graph);
+            let aggregates = pairwise::pairwise(a, units, &graph);
             if !worth(aggregates.count) {
                 return Ok(None);
             }
             prolongation::tentative(&aggregates)
         }
         Coarsening::RugeStuebenDirect | Coarsening::RugeStuebenExtended => {
-            let dependence = ruge_stueben::dependence(a, params.threshold, &graph);
+            let a = a.scaled_csr(|_| 1.0, unit);
+            let dependence = ruge_stueben::dependence(&a, params.threshold, &graph);
             let (number, count) = ruge_stueben::splitting(&dependence);
             if !worth(count) {
                 return Ok(None);
             }
             let extended = params.coarsening == Coarsening::RugeStuebenExtended;
-            ruge_stueben::interpolation(a, &dependence, &number, count, extended)
+            ruge_stueben::interpolation(&a, &dependence, &number, count, extended)
         }
     };
     let r = restriction(&p, weights);
-    Ok(Some((p, r)))
+    Ok(Some((in_units(p, units), r)))
+}
+
+/// The prolongation with its rows multiplied by what coarse unknowns of 1 are.
+fn in_units(p: Csr, units: Option<&[f64]>) -> Csr {
+    let Some(units) = units else { return p };
+    let ncols = p.ncols();
+    let (offsets, indices, mut values) = p.into_parts();
+    for (row, unit) in offsets.windows(2).zip(units) {
+        values[row[0]..row[1]].iter_mut().for_each(|v| *v *= unit);
+    }
+    Csr::from_trusted(ncols, offsets, indices, values)
 }
 
 /// The transpose of the prolongation, with its columns weighted.
 fn restriction(p: &Csr, weights: Option<&[f64]>) -> Csr {
     let r = p.transpose();
     let Some(weights) = weights else { return r };
-    let values = r.indices().iter().zip(r.values()).map(|(&i, v)| weights[i as usize] * v).collect();
-    Csr::from_trusted(r.ncols(), r.offsets().to_vec(), r.indices().to_vec(), values)
+    let ncols = r.ncols();
+    let (offsets, indices, mut values) = r.into_parts();
+    values.iter_mut().zip(&indices).for_each(|(v, &i)| *v *= weights[i as usize]);
+    Csr::from_trusted(ncols, offsets, indices, values)
 }
 
 impl Preconditioner for Multigrid {
@@ -235,7 +266,7 @@ impl Preconditioner for Multigrid {
     }
 
     fn scratch_len(&self) -> usize {
-        self.frame.scratch_len() + self.scratch_from(0)
+        self.frame.scratch_len(self.info.levels.first().map_or(0, |l| l.0)) + self.scratch_from(0)
     }
 
     fn is_linear(&self) -> bool {

@@ -10,7 +10,8 @@ const NO_ORDER: f64 = 1.0 / 16.0;
 const WORTH: f64 = 0.5;
 
 /// An order of the unknowns in which neighbours are near each other, if the one they have is no order and there is one. Aggregates
-/// are founded in that order and Gauss-Seidel follows it: both are better along fronts than at random.
+/// are founded in that order and Gauss-Seidel follows it: both are better along fronts than at random. The matrix comes without its
+/// diagonal.
 pub(crate) fn found(a: &Csr) -> Option<Vec<u32>> {
     let given = spread(a, |i| i);
     if given <= NO_ORDER * a.nrows() as f64 {
@@ -22,13 +23,13 @@ pub(crate) fn found(a: &Csr) -> Option<Vec<u32>> {
     (spread(a, |i| place[i]) <= WORTH * given).then_some(order)
 }
 
-/// Mean distance of the entries from the diagonal.
+/// Mean distance of the entries from the diagonal, which is one of them.
 fn spread(a: &Csr, place: impl Fn(usize) -> usize) -> f64 {
     let of = |i: usize| -> f64 {
         let here = place(i);
         a.row(i).0.iter().map(|&j| place(j as usize).abs_diff(here) as f64).sum()
     };
-    (0..a.nrows()).map(of).sum::<f64>() / a.nnz().max(1) as f64
+    (0..a.nrows()).map(of).sum::<f64>() / (a.nnz() + a.nrows()).max(1) as f64
 }
 
 /// Level by level from an end of each connected part, neighbours by their degree (Cuthill and McKee 1969; the end as George

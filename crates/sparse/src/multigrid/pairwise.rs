@@ -2,20 +2,20 @@
 
 use super::aggregation::{Aggregates, NONE, adopt};
 use super::strength::Graph;
-use crate::csr::Csr;
+use crate::difference::DifferenceMatrix;
 
 /// Passes of pairing: two make aggregates of about four.
 const PASSES: usize = 2;
 
 /// Pairs every node with its strongest free neighbour, then every pair with its strongest free pair.
-pub(crate) fn pairwise(a: &Csr, graph: &Graph) -> Aggregates {
+pub(crate) fn pairwise(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Graph) -> Aggregates {
     let (mut of, mut count) = matched(graph);
     for _pass in 1..PASSES {
         let (pair_of, pairs) = matched(&collapsed(graph, &of, count));
         of.iter_mut().filter(|k| **k != NONE).for_each(|k| *k = pair_of[*k as usize]);
         count = pairs;
     }
-    adopt(a, graph, &mut of, &mut count);
+    adopt(a, units, graph, &mut of, &mut count);
     Aggregates { of, count: count as usize }
 }
 

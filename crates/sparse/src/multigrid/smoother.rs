@@ -4,10 +4,11 @@ use super::SmootherKind;
 use super::blocks::BlockIlu;
 use super::chebyshev::Chebyshev;
 use super::colored::Colored;
-use crate::csr::{Csr, for_each_row};
+use crate::csr::for_each_row;
+use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
+use crate::parallel;
 use crate::vector::axpy;
-use rayon::prelude::*;
 
 /// Rows of a block of Gauss-Seidel. Within a block the newest values count, beyond it those from before the sweep; so
 /// blocks are independent, and their size, not the number of threads, decides about the result.
@@ -28,9 +29,9 @@ pub(crate) enum Smoother {
 }
 
 impl Smoother {
-    pub(crate) fn new(kind: SmootherKind, a: &Csr) -> Result<Self, MatrixError> {
+    pub(crate) fn new(kind: SmootherKind, a: &DifferenceMatrix) -> Result<Self, MatrixError> {
         let inverse = |factor: f64| {
-            let diagonal = a.diagonal();
+            let diagonal = a.diagonals();
             diagonal.into_iter().map(|d| if d == 0.0 { 0.0 } else { factor / d }).collect()
         };
         Ok(match kind {
@@ -38,7 +39,7 @@ impl Smoother {
             SmootherKind::GaussSeidel => Self::GaussSeidel(inverse(1.0)),
             SmootherKind::ColoredGaussSeidel => Self::Colored(Colored::new(a, inverse(1.0))),
             SmootherKind::Chebyshev => Self::Chebyshev(Chebyshev::new(a, inverse(1.0))),
-            SmootherKind::Ilu0 => Self::Ilu(BlockIlu::new(a)?),
+            SmootherKind::Ilu0 => Self::Ilu(BlockIlu::new(&a.to_csr())?),
         })
     }
 
@@ -53,7 +54,7 @@ impl Smoother {
     }
 
     /// A sweep from `x = 0`. `t` is scratch.
-    pub(crate) fn first(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64]) {
+    pub(crate) fn first(&self, a: &DifferenceMatrix, b: &[f64], x: &mut [f64], t: &mut [f64]) {
         match self {
             Self::Jacobi(inverse) => for_each_row(x, |i, x| *x = inverse[i] * b[i]),
             Self::GaussSeidel(inverse) => forward_from_zero(a, inverse, b, x),
@@ -71,7 +72,7 @@ impl Smoother {
     }
 
     /// A further sweep before the coarse correction. `t` is scratch.
-    pub(crate) fn before(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64]) {
+    pub(crate) fn before(&self, a: &DifferenceMatrix, b: &[f64], x: &mut [f64], t: &mut [f64]) {
         match self {
             Self::GaussSeidel(inverse) => sweep::<false>(a, inverse, b, x, t),
             Self::Colored(colored) => colored.sweep(a, b, x, t, false),
@@ -80,7 +81,7 @@ impl Smoother {
     }
 
     /// A sweep after the coarse correction, in the opposite direction where there is one.
-    pub(crate) fn after(&self, a: &Csr, b: &[f64], x: &mut [f64], t: &mut [f64]) {
+    pub(crate) fn after(&self, a: &DifferenceMatrix, b: &[f64], x: &mut [f64], t: &mut [f64]) {
         match self {
             Self::Jacobi(inverse) => {
                 let t = &mut t[..x.len()];
@@ -101,8 +102,8 @@ impl Smoother {
 }
 
 /// The first sweep of Gauss-Seidel, where all values are still zero.
-fn forward_from_zero(a: &Csr, inverse: &[f64], b: &[f64], x: &mut [f64]) {
-    x.par_chunks_mut(BLOCK).enumerate().for_each(|(block, x)| {
+fn forward_from_zero(a: &DifferenceMatrix, inverse: &[f64], b: &[f64], x: &mut [f64]) {
+    parallel::for_each_part(x, BLOCK, &|block, x| {
         let first = block * BLOCK;
         for k in 0..x.len() {
             let i = first + k;
@@ -123,27 +124,36 @@ fn forward_from_zero(a: &Csr, inverse: &[f64], b: &[f64], x: &mut [f64]) {
 }
 
 /// A sweep of Gauss-Seidel, from the last row to the first if `BACKWARD`.
-fn sweep<const BACKWARD: bool>(a: &Csr, inverse: &[f64], b: &[f64], x: &mut [f64], old: &mut [f64]) {
+fn sweep<const BACKWARD: bool>(
+    a: &DifferenceMatrix,
+    inverse: &[f64],
+    b: &[f64],
+    x: &mut [f64],
+    old: &mut [f64],
+) {
     let old = &mut old[..x.len()];
     old.copy_from_slice(x);
     let old = &*old;
-    x.par_chunks_mut(BLOCK).enumerate().for_each(|(block, x)| {
+    parallel::for_each_part(x, BLOCK, &|block, x| {
         let first = block * BLOCK;
+        let rows = x.len();
         let mut relax = |k: usize| {
             let i = first + k;
             let (columns, values) = a.row(i);
             let mut sum = b[i];
             for (&j, a_ij) in columns.iter().zip(values) {
                 let place = (j as usize).wrapping_sub(first);
-                // The row's own term is taken out, too, and added again below.
                 sum -= a_ij * if place < x.len() { x[place] } else { old[j as usize] };
             }
-            x[k] += sum * inverse[i];
+            // A row without a diagonal stays as it is.
+            if inverse[i] != 0.0 {
+                x[k] = sum * inverse[i];
+            }
         };
         if BACKWARD {
-            (0..old.len().min(first + BLOCK) - first).rev().for_each(&mut relax);
+            (0..rows).rev().for_each(&mut relax);
         } else {
-            (0..old.len().min(first + BLOCK) - first).for_each(&mut relax);
+            (0..rows).for_each(&mut relax);
         }
     });
 }

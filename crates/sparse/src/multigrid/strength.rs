@@ -1,7 +1,8 @@
 //! Which unknowns depend strongly on which.
 
-use crate::csr::{Csr, joined};
-use rayon::prelude::*;
+use crate::csr::joined;
+use crate::difference::DifferenceMatrix;
+use crate::parallel;
 
 /// Rows that one task works through.
 const ROWS_PER_TASK: usize = 4096;
@@ -41,100 +42,149 @@ impl Graph {
 /// This is the measure of Vaněk, Mandel and Brezina (Computing 56, 1996, (4)), with the threshold relative to the row as
 /// Ruge and Stüben have it, because the rows of wide stencils have no entry beside which 1 is a measure. It does not
 /// change when rows or columns are scaled, and a bond across a jump of the diffusivity by `c` has the strength `c^-1/2`.
-pub(crate) fn symmetric(a: &Csr, threshold: f64) -> Graph {
-    let n = a.nrows();
-    let diagonal = a.diagonal();
-    let mut measure = vec![0.0; a.nnz()];
-    let mut largest = vec![0.0_f64; n];
-    let mut settled = vec![false; n];
-    by_rows(a, &mut measure, &mut largest, &mut settled, |i, s, largest, settled| {
-        let (columns, values) = a.row(i);
-        let mut others = 0.0;
-        for ((&j, &a_ij), s) in columns.iter().zip(values).zip(s) {
-            let j = j as usize;
-            if j == i {
-                continue;
-            }
-            others += a_ij.abs();
-            let there = a_ij / diagonal[i];
-            if there < 0.0 {
-                let back = a.get(j, i) / diagonal[j];
-                if back < 0.0 {
-                    *s = (there * back).sqrt();
-                    *largest = largest.max(*s);
-                }
-            }
-        }
-        *settled = diagonal[i].abs() >= DOMINANT * others;
-    });
-    filtered(a, &measure, &largest, settled, threshold)
-}
-
-/// Whether smoothing alone settles every row.
-pub(crate) fn all_settled(a: &Csr) -> bool {
-    (0..a.nrows()).into_par_iter().with_min_len(ROWS_PER_TASK).all(|i| {
-        let (columns, values) = a.row(i);
-        let (mut diagonal, mut others) = (0.0, 0.0);
-        for (&j, v) in columns.iter().zip(values) {
-            *(if j as usize == i { &mut diagonal } else { &mut others }) += v.abs();
-        }
-        diagonal >= DOMINANT * others
-    })
-}
-
-/// Calls `f(i, measures of row i, largest of i, settled of i)` for every row, in parallel.
-fn by_rows(
-    a: &Csr,
-    measure: &mut [f64],
-    largest: &mut [f64],
-    settled: &mut [bool],
-    f: impl Fn(usize, &mut [f64], &mut f64, &mut bool) + Sync,
-) {
-    let mut parts = Vec::new();
-    let mut rest = measure;
-    for (task, (largest, settled)) in
-        largest.chunks_mut(ROWS_PER_TASK).zip(settled.chunks_mut(ROWS_PER_TASK)).enumerate()
-    {
-        let first = task * ROWS_PER_TASK;
-        let entries = a.offsets()[first + largest.len()] - a.offsets()[first];
-        let (own, others) = rest.split_at_mut(entries);
-        rest = others;
-        parts.push((first, own, largest, settled));
-    }
-    parts.into_par_iter().for_each(|(first, mut own, largest, settled)| {
-        for (k, (largest, settled)) in largest.iter_mut().zip(settled).enumerate() {
-            let (row, others) = own.split_at_mut(a.row(first + k).0.len());
-            own = others;
-            f(first + k, row, largest, settled);
-        }
-    });
-}
-
-/// Keeps the entries that are strong for both ends, in rows that are not settled.
-fn filtered(a: &Csr, measure: &[f64], largest: &[f64], settled: Vec<bool>, threshold: f64) -> Graph {
-    let n = a.nrows();
-    let kept = |task: usize| {
-        let mut part = (Vec::new(), Vec::new(), Vec::new());
-        for i in task * ROWS_PER_TASK..n.min((task + 1) * ROWS_PER_TASK) {
-            let before = part.1.len();
-            if !settled[i] {
-                let start = a.offsets()[i];
-                for (k, &j) in a.row(i).0.iter().enumerate() {
-                    let s = measure[start + k];
-                    let bound = threshold * largest[i].max(largest[j as usize]);
-                    if s > 0.0 && s >= bound && !settled[j as usize] {
-                        part.1.push(j);
-                        part.2.push(s);
-                    }
-                }
-            }
-            part.0.push(part.1.len() - before);
-        }
-        part
-    };
-    let parts: Vec<(Vec<usize>, Vec<u32>, Vec<f64>)> =
-        (0..n.div_ceil(ROWS_PER_TASK)).into_par_iter().map(kept).collect();
+///
+/// `units` measure the columns where it matters: in what settles a row.
+pub(crate) fn symmetric(a: &DifferenceMatrix, units: Option<&[f64]>, threshold: f64) -> Graph {
+    let n = a.n();
+    let inverse: Vec<f64> = parallel::map_rows(n, |i| 1.0 / a.diagonal(i));
+    let blocks = parallel::map_with(
+        n.div_ceil(ROWS_PER_TASK),
+        || Mirror::new(n),
+        |mirror, task| {
+            let rows = task * ROWS_PER_TASK..n.min((task + 1) * ROWS_PER_TASK);
+            let mut block = Block::default();
+            rows.for_each(|i| block.push(a, units, &inverse, threshold, mirror, i));
+            mirror.clear();
+            block
+        },
+    );
+    let largest: Vec<f64> = blocks.iter().flat_map(|b| b.largest.iter().copied()).collect();
+    let settled: Vec<bool> = blocks.iter().flat_map(|b| b.settled.iter().copied()).collect();
+    let parts = parallel::map(blocks.len(), |task| blocks[task].filtered(&largest, &settled, threshold));
+    drop(blocks);
     let parts = parts.iter().map(|p| (&p.0[..], &p.1[..], &p.2[..])).collect();
     let (offsets, neighbors, strengths) = joined(n, n, parts).into_parts();
     Graph { offsets, neighbors, strengths, settled }
+}
+
+/// Where the entries `a_ji` stand whose columns are rows that are gone through in order: a place in every row, which moves on
+/// with the rows. A search in each row would take several times as long.
+struct Mirror {
+    place: Vec<u32>,
+    touched: Vec<u32>,
+}
+
+/// No place yet.
+const NOWHERE: u32 = u32::MAX;
+
+impl Mirror {
+    fn new(n: usize) -> Self {
+        Self { place: vec![NOWHERE; n], touched: Vec::new() }
+    }
+
+    /// The entry in row `j` and column `i`; the `i` never decrease.
+    #[inline]
+    fn entry(&mut self, a: &DifferenceMatrix, j: usize, i: u32) -> f64 {
+        let (columns, values) = a.row(j);
+        let place = &mut self.place[j];
+        if *place == NOWHERE {
+            *place = columns.partition_point(|&k| k < i) as u32;
+            self.touched.push(j as u32);
+        }
+        let mut k = *place as usize;
+        while k < columns.len() && columns[k] < i {
+            k += 1;
+        }
+        *place = k as u32;
+        if columns.get(k) == Some(&i) { values[k] } else { 0.0 }
+    }
+
+    fn clear(&mut self) {
+        self.touched.drain(..).for_each(|j| self.place[j as usize] = NOWHERE);
+    }
+}
+
+/// What is strong as seen from the rows of a block: squares of measures.
+#[derive(Default)]
+struct Block {
+    lengths: Vec<usize>,
+    columns: Vec<u32>,
+    squares: Vec<f64>,
+    /// The largest square of every row.
+    largest: Vec<f64>,
+    settled: Vec<bool>,
+    row: Vec<(u32, f64)>,
+}
+
+impl Block {
+    fn push(
+        &mut self,
+        a: &DifferenceMatrix,
+        units: Option<&[f64]>,
+        inverse: &[f64],
+        threshold: f64,
+        mirror: &mut Mirror,
+        i: usize,
+    ) {
+        let (columns, values) = a.row(i);
+        let (mut others, mut largest) = (0.0, 0.0_f64);
+        self.row.clear();
+        for (&j, &a_ij) in columns.iter().zip(values) {
+            others += units.map_or(a_ij.abs(), |c| c[j as usize] * a_ij.abs());
+            let there = a_ij * inverse[i];
+            if there < 0.0 {
+                let back = mirror.entry(a, j as usize, i as u32) * inverse[j as usize];
+                if back < 0.0 {
+                    let square = there * back;
+                    largest = largest.max(square);
+                    self.row.push((j, square));
+                }
+            }
+        }
+        let own = units.map_or(1.0, |c| c[i]) / inverse[i].abs();
+        self.settled.push(own >= DOMINANT * others);
+        self.largest.push(largest);
+        let bound = threshold * threshold * largest;
+        let before = self.columns.len();
+        for &(j, square) in self.row.iter().filter(|e| e.1 > 0.0 && e.1 >= bound) {
+            self.columns.push(j);
+            self.squares.push(square);
+        }
+        self.lengths.push(self.columns.len() - before);
+    }
+
+    /// Keeps what is strong for both ends, in rows that are not settled.
+    fn filtered(
+        &self,
+        largest: &[f64],
+        settled: &[bool],
+        threshold: f64,
+    ) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
+        let (mut lengths, mut neighbors, mut strengths) = (Vec::new(), Vec::new(), Vec::new());
+        let mut start = 0;
+        for (k, &length) in self.lengths.iter().enumerate() {
+            let before = neighbors.len();
+            let row = start..start + length;
+            start += length;
+            if !self.settled[k] {
+                for (&j, &square) in self.columns[row.clone()].iter().zip(&self.squares[row]) {
+                    let bound = threshold * threshold * largest[j as usize];
+                    if square >= bound && !settled[j as usize] {
+                        neighbors.push(j);
+                        strengths.push(square.sqrt());
+                    }
+                }
+            }
+            lengths.push(neighbors.len() - before);
+        }
+        (lengths, neighbors, strengths)
+    }
+}
+
+/// Whether smoothing alone settles every row.
+pub(crate) fn all_settled(a: &DifferenceMatrix) -> bool {
+    (0..a.n()).all(|i| {
+        let others: f64 = a.row(i).1.iter().map(|v| v.abs()).sum();
+        a.diagonal(i).abs() >= DOMINANT * others
+    })
 }

@@ -1,11 +1,11 @@
 //! Multigrid, and what steps in for it.
 
 use super::direct::Factors;
-use super::krylov::{Method, iterate};
+use super::krylov::{Method, Residuals, iterate};
 use super::scaling::Scaled;
-use super::{AUTO_RESTART, SolveError, SolveInfo, SolverParams};
-use crate::csr::Csr;
-use crate::multigrid::{CycleKind, HierarchyInfo, Multigrid, MultigridParams};
+use super::{AUTO_RESTART, Levels, SolveError, SolveInfo, SolverParams};
+use crate::difference::{DifferenceMatrix, ScaledRows};
+use crate::multigrid::{CycleKind, HierarchyInfo, Multigrid, MultigridParams, Scaling};
 use crate::precond::{IncompleteLu, Preconditioner, PreconditionerKind, ilu0};
 use crate::vector::axpy;
 use std::sync::{Arc, OnceLock};
@@ -16,9 +16,20 @@ pub(crate) const PATIENCE: usize = 40;
 /// What steps in.
 const SUBSTITUTE: Method = Method::BiCgStab { l: 2 };
 
+/// The levels that are asked for.
+pub(crate) fn levels_of(params: &SolverParams) -> MultigridParams {
+    match params.preconditioner {
+        PreconditionerKind::Multigrid(levels) => levels,
+        _ => MultigridParams { cycle: CycleKind::W, ..MultigridParams::default() },
+    }
+}
+
 /// GMRES with multigrid, BiCGStab(2) with ILU(0) where that stagnates, and factors where that does, too.
 #[derive(Debug)]
 pub(crate) struct Chain {
+    rows: Arc<DifferenceMatrix>,
+    /// What the rows are multiplied by.
+    factors: Vec<f64>,
     multigrid: Option<Multigrid>,
     /// Set once multigrid has failed.
     substitute: OnceLock<IncompleteLu>,
@@ -27,84 +38,100 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    pub(crate) fn new(scaled: &Scaled, params: &SolverParams) -> Result<Self, SolveError> {
-        let levels = match params.preconditioner {
-            PreconditionerKind::Multigrid(levels) => levels,
-            _ => MultigridParams { cycle: CycleKind::W, ..MultigridParams::default() },
-        };
-        let weights = scaled.weights();
-        match Multigrid::new(Arc::clone(&scaled.matrix), weights.as_deref(), &levels) {
-            Ok(multigrid) => Ok(Self::of(Some(multigrid), OnceLock::new())),
+    /// For rows that are multiplied by `factors`.
+    pub(crate) fn new(
+        rows: Arc<DifferenceMatrix>,
+        factors: Vec<f64>,
+        params: &SolverParams,
+    ) -> Result<Self, SolveError> {
+        if let Some(row) =
+            (0..rows.n()).find(|&i| rows.diagonal(i) == 0.0 && rows.row(i).1.iter().all(|&v| v == 0.0))
+        {
+            return Err(SolveError::EmptyRow { row });
+        }
+        let scaling = Scaling { rows: factors.clone(), unknowns: Vec::new() };
+        let (substitute, direct) = (OnceLock::new(), OnceLock::new());
+        let mut chain = Self { rows, factors, multigrid: None, substitute, direct };
+        match Multigrid::of(Arc::clone(&chain.rows), None, scaling, &levels_of(params)) {
+            Ok(multigrid) => chain.multigrid = Some(multigrid),
             // A coarsest level that cannot be factorised, or whose entries overflow.
             Err(SolveError::Singular { .. } | SolveError::Matrix(_)) => {
-                Ok(Self::of(None, OnceLock::from(ilu0(&scaled.matrix)?)))
+                chain.substitute = OnceLock::from(ilu0(&chain.scaled().to_csr())?);
             }
-            Err(error) => Err(error),
+            Err(error) => return Err(error),
         }
+        Ok(chain)
     }
 
-    fn of(multigrid: Option<Multigrid>, substitute: OnceLock<IncompleteLu>) -> Self {
-        Self { multigrid, substitute, direct: OnceLock::new() }
+    fn scaled(&self) -> ScaledRows<'_> {
+        ScaledRows { matrix: &self.rows, factors: &self.factors }
     }
 
-    /// Other values in the same pattern: the levels stay, and multigrid gets another chance.
-    pub(crate) fn refresh(&mut self, matrix: &Arc<Csr>) -> Result<(), SolveError> {
+    /// Number of unknowns.
+    pub(crate) fn n(&self) -> usize {
+        self.rows.n()
+    }
+
+    /// Other values in the same pattern: the levels stay, and multigrid gets another chance. Rows keep their factors, so that sums
+    /// over rows keep their meaning.
+    pub(crate) fn refresh(&mut self, rows: Arc<DifferenceMatrix>) -> Result<(), SolveError> {
+        self.rows = rows;
         self.direct = OnceLock::new();
-        let Some(multigrid) = &mut self.multigrid else {
-            self.substitute = OnceLock::from(ilu0(matrix)?);
-            return Ok(());
-        };
         self.substitute = OnceLock::new();
-        multigrid.refresh(Arc::clone(matrix))
+        match &mut self.multigrid {
+            Some(multigrid) => multigrid.refresh_rows(Arc::clone(&self.rows))?,
+            None => self.substitute = OnceLock::from(ilu0(&self.scaled().to_csr())?),
+        }
+        Ok(())
     }
 
-    /// Multigrid, as long as nothing had to step in for it.
-    pub(crate) fn multigrid(&self) -> Option<&Multigrid> {
-        self.multigrid.as_ref().filter(|_| self.substitute.get().is_none())
+    /// What multigrid preconditions, as long as nothing had to step in for it.
+    pub(crate) fn levels(&self) -> Option<Levels<'_>> {
+        let multigrid = self.multigrid.as_ref().filter(|_| self.substitute.get().is_none())?;
+        Some(Levels { rows: self.scaled(), multigrid })
     }
 
     pub(crate) fn hierarchy(&self) -> Option<&HierarchyInfo> {
         self.multigrid.as_ref().map(Multigrid::info)
     }
 
+    /// Solves for a right-hand side, which is not scaled.
     pub(crate) fn solve(
         &self,
-        a: &Csr,
-        b: &[f64],
+        rhs: &[f64],
         params: &SolverParams,
     ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+        let b: Vec<f64> = rhs.iter().zip(&self.factors).map(|(b, f)| b * f).collect();
         if let Some(factors) = self.direct.get() {
-            return by_factors(factors, b);
+            return by_factors(factors, &b);
         }
-        match self.iterated(a, b, params) {
+        match self.iterated(&b, params) {
             Err(error @ (SolveError::NoConvergence { .. } | SolveError::BreakDown { .. }))
-                if a.nrows() <= params.direct_max =>
+                if self.n() <= params.direct_max =>
             {
-                let Ok(factors) = Factors::new(a) else { return Err(error) };
-                by_factors(self.direct.get_or_init(|| factors), b)
+                let Ok(factors) = Factors::new(&self.scaled().to_csr()) else { return Err(error) };
+                by_factors(self.direct.get_or_init(|| factors), &b)
             }
             solved => solved,
         }
     }
 
-    fn iterated(
-        &self,
-        a: &Csr,
-        b: &[f64],
-        params: &SolverParams,
-    ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+    fn iterated(&self, b: &[f64], params: &SolverParams) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+        let a = self.scaled();
         if let Some(lu) = self.substitute.get() {
-            return iterate(SUBSTITUTE, a, lu, b, params);
+            return iterate(SUBSTITUTE, &a, lu, b, params);
         }
-        let Some(multigrid) = &self.multigrid else { return iterate(SUBSTITUTE, a, &ilu0(a)?, b, params) };
+        let Some(multigrid) = &self.multigrid else {
+            return iterate(SUBSTITUTE, &a, &ilu0(&a.to_csr())?, b, params);
+        };
         let gmres = Method::Gmres { restart: AUTO_RESTART };
         let patient = SolverParams { max_iterations: params.max_iterations.min(PATIENCE), ..*params };
-        match iterate(gmres, a, multigrid, b, &patient) {
+        match iterate(gmres, &a, multigrid, b, &patient) {
             Err(
                 SolveError::NoConvergence { solver, residual, iterations, best, .. }
                 | SolveError::BreakDown { solver, residual, iterations, best, .. },
             ) if params.max_iterations > iterations => {
-                let factors = ilu0(a)?;
+                let factors = ilu0(&a.to_csr())?;
                 let lu = self.substitute.get_or_init(|| factors);
                 go_on(a, lu, b, params, &solver, (residual, iterations, best))
             }
@@ -120,7 +147,7 @@ fn by_factors((scaled, factors): &(Scaled, Factors), b: &[f64]) -> Result<(Vec<f
 
 /// Solves for what the first method has left.
 fn go_on(
-    a: &Csr,
+    a: ScaledRows<'_>,
     lu: &dyn Preconditioner,
     b: &[f64],
     params: &SolverParams,
@@ -134,7 +161,7 @@ fn go_on(
         max_iterations: params.max_iterations - products,
         ..*params
     };
-    match iterate(SUBSTITUTE, a, lu, &residual, &rest) {
+    match iterate(SUBSTITUTE, &a, lu, &residual, &rest) {
         Ok((correction, mut info)) => {
             axpy(1.0, &correction, &mut x);
             info.iterations += products;
@@ -144,6 +171,6 @@ fn go_on(
             Ok((x, info))
         }
         // The remainder may be out of reach where the whole is not.
-        Err(_) => iterate(SUBSTITUTE, a, lu, b, params),
+        Err(_) => iterate(SUBSTITUTE, &a, lu, b, params),
     }
 }

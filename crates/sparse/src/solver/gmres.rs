@@ -28,9 +28,12 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
             break;
         }
         let mut w = vec![0.0; n];
-        cycle.apply(&basis[basis.len() - 1], &mut z, &mut w);
         if flexible {
-            directions.push(z.clone());
+            cycle.precondition(&basis[basis.len() - 1], &mut z);
+            directions.push(rounded(&mut z));
+            cycle.multiply(&z, &mut w);
+        } else {
+            cycle.apply(&basis[basis.len() - 1], &mut z, &mut w);
         }
         let before = norm(&w);
         let mut column = orthogonalise(&basis, &mut w, before);
@@ -50,8 +53,9 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
         basis.push(scaled(&w, 1.0 / length));
     }
     if flexible {
-        for (y, z) in triangle.solve().iter().zip(&directions) {
-            axpy(*y, z, d);
+        for (y, direction) in triangle.solve().iter().zip(&directions) {
+            z.iter_mut().zip(direction).for_each(|(z, &x)| *z = f64::from(x));
+            axpy(*y, &z, d);
         }
         return end;
     }
@@ -61,6 +65,14 @@ pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], 
     }
     cycle.precondition(r, d);
     end
+}
+
+/// Rounds a direction to single precision, in which it is kept: a preconditioner that changes from step to step may do that, too,
+/// as products are made with what is left.
+fn rounded(z: &mut [f64]) -> Vec<f32> {
+    let single = z.iter().map(|&z| z as f32).collect::<Vec<f32>>();
+    z.iter_mut().zip(&single).for_each(|(z, &x)| *z = f64::from(x));
+    single
 }
 
 fn scaled(x: &[f64], factor: f64) -> Vec<f64> {

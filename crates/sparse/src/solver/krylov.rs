@@ -129,6 +129,12 @@ impl Cycle<'_> {
         self.products += 1;
     }
 
+    /// `y = A z`
+    pub(crate) fn multiply(&mut self, z: &[f64], y: &mut [f64]) {
+        self.a.apply(z, y);
+        self.products += 1;
+    }
+
     pub(crate) fn precondition(&mut self, x: &[f64], z: &mut [f64]) {
         self.m.apply(x, z, self.scratch);
     }

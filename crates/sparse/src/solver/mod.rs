@@ -12,7 +12,7 @@ mod prepared;
 mod scaling;
 
 pub(crate) use cg::cg_cycle;
-pub(crate) use chain::PATIENCE;
+pub(crate) use chain::{PATIENCE, levels_of};
 pub(crate) use direct::Factors;
 pub use error::SolveError;
 pub(crate) use gmres::gmres_cycle;

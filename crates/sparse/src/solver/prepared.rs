@@ -6,9 +6,11 @@ use super::krylov::{Method, iterate};
 use super::scaling::Scaled;
 use super::{AUTO_DIRECT_MAX, SolveError, SolveInfo, SolverKind, SolverParams};
 use crate::csr::Csr;
+use crate::difference::{DifferenceMatrix, ScaledRows};
 use crate::error::MatrixError;
 use crate::multigrid::{HierarchyInfo, Multigrid};
 use crate::precond::{Preconditioner, PreconditionerKind};
+use std::sync::Arc;
 
 /// Solves `A x = b` once.
 ///
@@ -21,23 +23,20 @@ pub fn solve(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> Result<(Vec<f6
 /// A scaled matrix with its factors or its preconditioner.
 #[derive(Debug)]
 pub struct Prepared {
-    scaled: Scaled,
     engine: Engine,
     params: SolverParams,
 }
 
 #[derive(Debug)]
 enum Engine {
-    Direct(Factors),
-    Krylov(Method, Box<dyn Preconditioner>),
+    Direct(Scaled, Factors),
+    Krylov(Scaled, Method, Box<dyn Preconditioner>),
     Multigrid(Box<Chain>),
 }
 
-/// Multigrid with the matrix that it was made for.
+/// Multigrid with the rows that it was made for.
 pub(crate) struct Levels<'a> {
-    pub(crate) matrix: &'a Csr,
-    /// What the rows were multiplied by.
-    pub(crate) factors: &'a [f64],
+    pub(crate) rows: ScaledRows<'a>,
     pub(crate) multigrid: &'a Multigrid,
 }
 
@@ -52,9 +51,7 @@ impl Prepared {
         let method = match params.kind {
             SolverKind::Auto if matrix.nrows() <= AUTO_DIRECT_MAX => None,
             SolverKind::Auto | SolverKind::Multigrid => {
-                let scaled = Scaled::rows(matrix)?;
-                let chain = Chain::new(&scaled, params)?;
-                return Ok(Self { scaled, engine: Engine::Multigrid(Box::new(chain)), params: *params });
+                return Self::multigrid(Arc::new(DifferenceMatrix::from_csr(matrix)?), None, params);
             }
             SolverKind::Direct => None,
             SolverKind::BiCgStab { l } => Some(Method::BiCgStab { l }),
@@ -64,7 +61,7 @@ impl Prepared {
         };
         let Some(method) = method else {
             let (scaled, factors) = Factors::new(matrix)?;
-            return Ok(Self { scaled, engine: Engine::Direct(factors), params: *params });
+            return Ok(Self { engine: Engine::Direct(scaled, factors), params: *params });
         };
         let scaled = if method == Method::Cg {
             Scaled::symmetric(matrix)?.ok_or_else(|| not_positive(matrix))?
@@ -76,25 +73,41 @@ impl Prepared {
         if !preconditioner.is_linear() && !matches!(method, Method::Gmres { .. }) {
             return Err(not_flexible(method));
         }
-        Ok(Self { scaled, engine: Engine::Krylov(method, preconditioner), params: *params })
+        Ok(Self { engine: Engine::Krylov(scaled, method, preconditioner), params: *params })
     }
 
-    /// GMRES with multigrid for a matrix whose rows are multiplied by factors that are given.
+    /// The same for rows in difference form. Multigrid shares them with whoever has them.
+    ///
+    /// # Errors
+    /// Those of [`Prepared::new`].
+    pub fn of_rows(rows: Arc<DifferenceMatrix>, params: &SolverParams) -> Result<Self, SolveError> {
+        match params.kind {
+            SolverKind::Auto if rows.n() > AUTO_DIRECT_MAX => Self::multigrid(rows, None, params),
+            SolverKind::Multigrid => Self::multigrid(rows, None, params),
+            _ => Self::new(&rows.to_csr(), params),
+        }
+    }
+
+    /// GMRES with multigrid for rows that are multiplied by factors; by those that make their largest entries alike where none
+    /// are given.
     pub(crate) fn multigrid(
-        matrix: &Csr,
-        factors: Vec<f64>,
+        rows: Arc<DifferenceMatrix>,
+        factors: Option<Vec<f64>>,
         params: &SolverParams,
     ) -> Result<Self, SolveError> {
         check(params)?;
-        let scaled = Scaled::by_factors(matrix, factors)?;
-        let chain = Chain::new(&scaled, params)?;
-        Ok(Self { scaled, engine: Engine::Multigrid(Box::new(chain)), params: *params })
+        let factors = factors.unwrap_or_else(|| rows.balancing_factors());
+        let chain = Chain::new(rows, factors, params)?;
+        Ok(Self { engine: Engine::Multigrid(Box::new(chain)), params: *params })
     }
 
     /// Number of unknowns.
     #[must_use]
     pub fn n(&self) -> usize {
-        self.scaled.matrix.nrows()
+        match &self.engine {
+            Engine::Direct(scaled, _) | Engine::Krylov(scaled, ..) => scaled.matrix.nrows(),
+            Engine::Multigrid(chain) => chain.n(),
+        }
     }
 
     /// Solves for one right-hand side. For `b = 0` the answer is 0, at once.
@@ -104,16 +117,18 @@ impl Prepared {
     pub fn solve(&self, rhs: &[f64]) -> Result<(Vec<f64>, SolveInfo), SolveError> {
         MatrixError::check_length("right-hand side", rhs.len(), self.n())?;
         MatrixError::check_finite("right-hand side", rhs)?;
-        let b = self.scaled.rhs(rhs);
-        let matrix = &self.scaled.matrix;
-        let solved = match &self.engine {
-            Engine::Direct(factors) => factors.solve_refined(&**matrix, &b),
-            Engine::Krylov(method, m) => iterate(*method, &**matrix, m.as_ref(), &b, &self.params),
-            Engine::Multigrid(chain) => chain.solve(matrix, &b, &self.params),
+        let (scaled, solved) = match &self.engine {
+            Engine::Multigrid(chain) => return chain.solve(rhs, &self.params),
+            Engine::Direct(scaled, factors) => {
+                (scaled, factors.solve_refined(&*scaled.matrix, &scaled.rhs(rhs)))
+            }
+            Engine::Krylov(scaled, method, m) => {
+                (scaled, iterate(*method, &*scaled.matrix, m.as_ref(), &scaled.rhs(rhs), &self.params))
+            }
         };
         match solved {
-            Ok((x, info)) => Ok((self.scaled.unscale(x), info)),
-            Err(error) => Err(self.unscale_best(error)),
+            Ok((x, info)) => Ok((scaled.unscale(x), info)),
+            Err(error) => Err(unscale_best(scaled, error)),
         }
     }
 
@@ -125,19 +140,17 @@ impl Prepared {
     pub fn refresh(&mut self, matrix: &Csr) -> Result<(), SolveError> {
         MatrixError::check_length("rows of the matrix", matrix.nrows(), self.n())?;
         let kept = match &mut self.engine {
-            Engine::Direct(_) => false,
-            Engine::Krylov(Method::Cg, _) => false,
-            Engine::Krylov(_, m) => {
-                let scaled = self.scaled.renewed(matrix)?;
-                let kept = m.refresh(&scaled.matrix)?;
+            Engine::Direct(..) | Engine::Krylov(_, Method::Cg, _) => false,
+            Engine::Krylov(scaled, _, m) => {
+                let renewed = scaled.renewed(matrix)?;
+                let kept = m.refresh(&renewed.matrix)?;
                 if kept {
-                    self.scaled = scaled;
+                    *scaled = renewed;
                 }
                 kept
             }
             Engine::Multigrid(chain) => {
-                self.scaled = self.scaled.renewed(matrix)?;
-                chain.refresh(&self.scaled.matrix)?;
+                chain.refresh(Arc::new(DifferenceMatrix::from_csr(matrix)?))?;
                 true
             }
         };
@@ -159,25 +172,26 @@ impl Prepared {
     #[must_use]
     pub fn hierarchy(&self) -> Option<&HierarchyInfo> {
         match &self.engine {
-            Engine::Direct(_) => None,
-            Engine::Krylov(_, m) => m.hierarchy(),
+            Engine::Direct(..) => None,
+            Engine::Krylov(_, _, m) => m.hierarchy(),
             Engine::Multigrid(chain) => chain.hierarchy(),
         }
     }
 
     /// The levels to precondition with, where GMRES with multigrid is in charge and has not failed.
     pub(crate) fn levels(&self) -> Option<Levels<'_>> {
-        let Engine::Multigrid(chain) = &self.engine else { return None };
-        let multigrid = chain.multigrid()?;
-        Some(Levels { matrix: &self.scaled.matrix, factors: self.scaled.factors(), multigrid })
-    }
-
-    fn unscale_best(&self, mut error: SolveError) -> SolveError {
-        if let SolveError::NoConvergence { best, .. } | SolveError::BreakDown { best, .. } = &mut error {
-            *best = self.scaled.unscale(std::mem::take(best));
+        match &self.engine {
+            Engine::Multigrid(chain) => chain.levels(),
+            _ => None,
         }
-        error
     }
+}
+
+fn unscale_best(scaled: &Scaled, mut error: SolveError) -> SolveError {
+    if let SolveError::NoConvergence { best, .. } | SolveError::BreakDown { best, .. } = &mut error {
+        *best = scaled.unscale(std::mem::take(best));
+    }
+    error
 }
 
 fn not_flexible(method: Method) -> SolveError {

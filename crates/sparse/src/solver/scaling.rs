@@ -41,7 +41,7 @@ impl Scaled {
     }
 
     /// Rows multiplied by factors that are given.
-    pub(crate) fn by_factors(matrix: &Csr, rows: Vec<f64>) -> Result<Self, SolveError> {
+    fn by_factors(matrix: &Csr, rows: Vec<f64>) -> Result<Self, SolveError> {
         matrix.require_square()?;
         let matrix = Arc::new(matrix.row_scaled(&rows)?);
         largest_entries(&matrix)?;

@@ -20,6 +20,9 @@ const GHOSTS_MAX: usize = 100_000;
 /// The residual at which the targets count.
 const TOLERANCE: f64 = 1e-10;
 
+/// Vectors of a solve besides those that GMRES keeps.
+const VECTORS: usize = 10;
+
 /// Minutes of work: every row is reported as soon as it is there.
 pub(super) fn run() -> Outcome {
     let head = [
@@ -79,11 +82,11 @@ fn figures(
     };
     let (complexity, levels) =
         prepared.hierarchy().map_or((f64::NAN, 0), |h| (h.operator_complexity(), h.bytes));
-    // The rows in difference form with their sums, right-hand side and scales; the scaled matrix; the levels; and the vectors of
-    // GMRES, two for an iteration where it is flexible.
-    let rows = system.matrix().off_diagonal().bytes();
-    let vectors = iterations.min(AUTO_RESTART) * if system.extra() > 0 { 2 } else { 1 } + 6;
-    let bytes = 2 * rows + 36 * system.n() + levels + 8 * vectors * system.n();
+    // The rows in difference form with their sums, right-hand side, scales, groups and factors; the levels, which share the rows; and
+    // the vectors of GMRES: for an iteration one, and half of one where it is flexible.
+    let rows = system.matrix().off_diagonal().bytes() + 36 * system.n();
+    let kept = iterations.min(AUTO_RESTART) * if system.extra() > 0 { 12 } else { 8 };
+    let bytes = rows + levels + (kept + 8 * VECTORS) * system.n();
     Ok(vec![
         format!("{n}"),
         format!("{contrast:.0e}"),

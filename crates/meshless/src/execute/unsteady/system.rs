@@ -145,11 +145,11 @@ impl<'a, const D: usize> Heat<'a, D> {
         let params = SystemParams { solver: self.plan.solver, split_floating };
         let (rows, constants) = self.mass.shifted(&self.discretization, c)?;
         let system = match (old, &constants) {
-            (Some(old), _) => old.renewed(rows, constants.as_ref(), &params),
+            (Some(old), _) => old.renewed(&rows, constants.as_ref(), &params),
             (None, Some(constants)) => {
-                PreparedSystem::with_constants(rows, constants, &self.prescribed(), &params)
+                PreparedSystem::with_constants(&rows, constants, &self.prescribed(), &params)
             }
-            (None, None) => PreparedSystem::new(&self.discrete.problem(), rows, &self.prescribed(), &params),
+            (None, None) => PreparedSystem::new(&self.discrete.problem(), &rows, &self.prescribed(), &params),
         };
         let system = system.map_err(|e| self.discrete.explain(self.scene, e))?;
         self.matrices += 1;
