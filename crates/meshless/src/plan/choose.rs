@@ -129,18 +129,21 @@ fn outpaces_multigrid(name: MethodName, survey: &Survey) -> bool {
     name == MethodName::ParticleDifferenceExtended || survey.has(|e| matches!(e, Effect::Slits))
 }
 
-/// Other entries of a row, in diagonals, from which its unknown stays on every level; see `docs/multigrid.md`.
+/// Other entries of a row, in diagonals, from which its unknown stays on every level; rows with ghosts, which are longer, have
+/// more of them. See `docs/multigrid.md`.
 const KEEP: f64 = 1.4;
+const KEEP_WITH_GHOSTS: f64 = 2.0;
 
 /// Rows of the sharp method have large entries of either sign, and those that cross an interface are not conservative: an
 /// incomplete factorisation smooths them better, and their columns need a restriction of their own; see `docs/sharp.md`.
 /// Stencils that cross interfaces without balances have such rows there only, which coarse levels must leave as they are.
 fn multigrid(method: MethodName, survey: &Survey) -> MultigridParams {
     match method {
-        MethodName::GfdmClassical | MethodName::GfdmPositive | MethodName::ImmersedInterface
-            if survey.contrast > FLOATING_CONTRAST =>
-        {
+        MethodName::GfdmClassical | MethodName::GfdmPositive if survey.contrast > FLOATING_CONTRAST => {
             MultigridParams { keep: KEEP, ..MultigridParams::default() }
+        }
+        MethodName::ImmersedInterface if survey.contrast > FLOATING_CONTRAST => {
+            MultigridParams { keep: KEEP_WITH_GHOSTS, ..MultigridParams::default() }
         }
         MethodName::Sharp => MultigridParams {
             smoother: SmootherKind::Ilu0,

@@ -98,14 +98,16 @@ impl Bordered {
     }
 
     /// The same, with the split that tells what `w` and `c` make of nodal values, and its scales: multigrid is set up in nodal
-    /// values then. The extra unknowns are the constants of its clusters and nothing else. A method that makes rows over `w` and
-    /// `c` itself says so by this; its columns must be what a shift of all `w` of a cluster by `-1 / s` amounts to, up to rounding.
-    /// [`Split::apply`](crate::Split::apply) gives its own.
+    /// values then. The extra unknowns are the constants of its clusters; one more may follow, which takes up what is not
+    /// balanced in a pure Neumann problem. A method that makes rows over `w` and `c` itself says so by this; its columns must be what
+    /// a shift of all `w` of a cluster by `-1 / s` amounts to, up to rounding. [`Split::apply`](crate::Split::apply) gives its own.
     ///
     /// # Errors
     /// [`MatrixError::Length`], and [`MatrixError::NoPin`] where the split pins other nodes.
     pub fn with_split(self, split: Split) -> Result<Self, MatrixError> {
-        MatrixError::check_length("pinned nodes of the split", split.pinned().len(), self.extra())?;
+        if self.extra() != split.extra() + 1 {
+            MatrixError::check_length("pinned nodes of the split", split.pinned().len(), self.extra())?;
+        }
         if let Some(cluster) = split.pinned().iter().zip(&self.pinned).position(|(a, b)| a != b) {
             return Err(MatrixError::NoPin {
                 cluster,
@@ -113,7 +115,7 @@ impl Bordered {
             });
         }
         let scaled = self.with_scales(split.scales())?;
-        let split = (split.extra() > 0).then_some(split);
+        let split = (scaled.extra() > 0).then_some(split);
         Ok(Self { split, ..scaled })
     }
 

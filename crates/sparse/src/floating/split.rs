@@ -200,7 +200,7 @@ impl Split {
         columns.push(entries.map(|(i, &v)| (i as u32, v)).collect());
         let mut pins = self.pinned.clone();
         pins.push(pinned as u32);
-        Bordered::new(self.scaled(matrix)?, columns, pins, rhs.to_vec())?.with_scales(self.scales())
+        Bordered::new(self.scaled(matrix)?, columns, pins, rhs.to_vec())?.with_split(self.clone())
     }
 
     /// The equations as they act on `w`, again in difference form: `a_ij s_j` and the row sum
