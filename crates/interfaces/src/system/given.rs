@@ -86,6 +86,9 @@ fn adrift(
     let (mut columns, mut pinned) = (constants.columns.clone(), split.pinned().to_vec());
     pinned.push(free.unwrap_or(n / 2) as u32);
     columns.push((0..).zip(&discretization.volumes).map(|(row, &volume)| (row, volume)).collect());
-    let scales = (0..n).map(|i| split.scale(i)).collect();
-    Ok(Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?.with_scales(scales)?)
+    let system = Bordered::new(reduced.matrix.clone(), columns, pinned, reduced.rhs.clone())?;
+    Ok(match free {
+        Some(_) => system.with_split(split.clone())?,
+        None => system.with_scales((0..n).map(|i| split.scale(i)).collect())?,
+    })
 }
