@@ -1,7 +1,7 @@
 //! What must hold with refinement patches.
 
 use super::patches::{CASE, COARSE, PAYING, SCALES, UNIFORM};
-use super::patches_in_space::{self, FINE, ONE, TWO};
+use super::patches_in_space::{self, FINE, ONE, ONE_BY_M6, TWO};
 use super::runs::Run;
 use super::{PATCH_ORDERS, SCALES_ORDER, paper};
 use crate::verify::claims::Claims;
@@ -107,6 +107,10 @@ fn in_space(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Clai
         let difference = rate(ONE).zip(rate(FINE)).map(|(patch, one)| (patch - one).abs());
         let claim = format!("{ONE}, m = {order}: order less that on one fine mesh");
         claims.at_most(CASE, claim, difference, ORDER_MARGIN);
+        if order > 4 {
+            let claim = format!("figure 5 (b), {ONE_BY_M6}: order at m = {order}");
+            claims.at_least(CASE, claim, rate(ONE_BY_M6), M6_ORDER);
+        }
         for (name, over, band) in [(ONE, FINE, [0.98, 1.02]), (TWO, ONE, [0.99, 1.01])] {
             let ratio = error(name, order, finest).zip(error(over, order, finest)).map(|(a, b)| a / b);
             claims.within(CASE, format!("m = {order}: error of {name} over that of {over}"), ratio, band);

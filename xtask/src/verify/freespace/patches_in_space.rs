@@ -10,16 +10,24 @@ use super::patches::CASE;
 use super::problems;
 use super::runs::Run;
 
-/// Ways of covering the bump.
-pub(super) const LAYOUTS: [(&str, &[[[f64; 3]; 2]]); 3] = [
-    (FINE, &[]),
-    (ONE, &[[[-0.5625; 3], [0.5625; 3]]]),
-    (TWO, &[[[-0.5625; 3], [0.0, 0.5625, 0.5625]], [[0.0, -0.5625, -0.5625], [0.5625; 3]]]),
+/// A way of covering the bump: its name, boxes as corners, and how meshes are brought together.
+pub(super) type Layout = (&'static str, &'static [[[f64; 3]; 2]], Superposition);
+
+const ROUND: [[f64; 3]; 2] = [[-0.5625; 3], [0.5625; 3]];
+const HALVES: [[[f64; 3]; 2]; 2] =
+    [[[-0.5625; 3], [0.0, 0.5625, 0.5625]], [[0.0, -0.5625, -0.5625], [0.5625; 3]]];
+
+pub(super) const LAYOUTS: [Layout; 4] = [
+    (FINE, &[], Superposition::Shift),
+    (ONE, &[ROUND], Superposition::Shift),
+    (TWO, &HALVES, Superposition::Shift),
+    (ONE_BY_M6, &[ROUND], Superposition::M6Star),
 ];
 
 pub(super) const FINE: &str = "3-D, one fine mesh";
 pub(super) const ONE: &str = "3-D, one patch, shift";
 pub(super) const TWO: &str = "3-D, two bordering patches, shift";
+pub(super) const ONE_BY_M6: &str = "3-D, one patch, M6*";
 
 /// Orders that are looked at, and cells of the base mesh in each direction.
 pub(super) const ORDERS: [usize; 2] = [4, 6];
@@ -38,11 +46,7 @@ const WANTED: [Output; 3] = [
 ];
 
 /// The bump of radius 1/2 on a base mesh of `n` cells in each direction with patches, or on one mesh as fine as those.
-pub(super) fn run(
-    (variant, boxes): (&'static str, &[[[f64; 3]; 2]]),
-    order: usize,
-    n: usize,
-) -> Result<Run, String> {
+pub(super) fn run((variant, boxes, superposition): Layout, order: usize, n: usize) -> Result<Run, String> {
     let said = |e: meshless_freespace::FreeSpaceError| format!("{variant}, m = {order}, N = {n}: {e}");
     let fine = boxes.is_empty();
     let cells = [if fine { 2 * n } else { n }; 3];
@@ -59,12 +63,7 @@ pub(super) fn run(
         plan.solve(&[&source], &WANTED, &mut Workspace::default(), &mut fields).map_err(said)?;
         (vec![(base, fields)], plan_seconds, start.elapsed().as_secs_f64(), base.len())
     } else {
-        let params = RefineParams {
-            order,
-            smoothing: Some(2.0),
-            tolerance: TOLERANCE,
-            superposition: Superposition::Shift,
-        };
+        let params = RefineParams { order, smoothing: Some(2.0), tolerance: TOLERANCE, superposition };
         let plan = RefinedPlan::new(&base, &patches, params).map_err(said)?;
         let plan_seconds = start.elapsed().as_secs_f64();
         let sources: Vec<Vec<Vec<f64>>> = (0..plan.len())
