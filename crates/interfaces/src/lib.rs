@@ -66,6 +66,7 @@ mod slit;
 mod support_values;
 mod surface_field;
 mod system;
+pub mod thin_layers;
 
 pub use adjacency::adjacent_pairs;
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};

@@ -25,7 +25,7 @@ pub struct NodalField {
     pub region: Vec<u16>,
     /// How the row of the node was made.
     pub kind: Vec<RowKind>,
-    /// The estimated error, where the method is compared with a higher order of itself on the same nodes.
+    /// The estimated error, where the method is compared with itself by polynomials of one degree more, on the same nodes.
     pub estimate: Option<Vec<f64>>,
     /// What the stencil and the row of the node look like, where the plan asks for it.
     pub diagnosis: Option<Vec<NodeDiagnosis>>,

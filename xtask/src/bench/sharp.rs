@@ -67,7 +67,7 @@ fn one_material(text: &str) -> String {
     }
 }
 
-/// Seconds from points to solution, and the error; targets are what a finite-element code of curved elements of order 4
+/// Seconds from points to solution, with the gradients at the nodes, which come with the rows; and the error; targets are what a finite-element code of curved elements of order 4
 /// needs where that converges, and less where it does not.
 fn scenes() -> Result<Table, Failure> {
     let mut table = Table::new(&["scene", "nodes", "error", "seconds", "target: error", "target: seconds"]);

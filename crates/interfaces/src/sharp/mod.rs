@@ -19,7 +19,6 @@ mod rate;
 mod sample;
 mod stencil;
 mod thickness;
-mod thin;
 mod unknowns;
 
 use std::time::Instant;
@@ -28,14 +27,12 @@ use meshless_neighbors::CellList;
 use meshless_sparse::DifferenceMatrix;
 
 use crate::method::{Counts, Discretization, Method, RowKind, SplitRows};
-use crate::parallel;
 use crate::{GradientRow, MethodError, Problem, Sample, SystemSolution};
+use crate::{parallel, thin_layers};
 use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
 pub use params::{Form, MAX_ORDER, SharpParams};
 use sample::Values;
-pub use thickness::RESOLVED;
-pub use thin::{resolving_spacing, suspect, thinnest, unresolved, unseen};
 use unknowns::{ConnectedParts, Unknowns};
 
 /// The sharp method.
@@ -87,7 +84,7 @@ impl<const D: usize> Method<D> for Sharp {
         let start = Instant::now();
         self.check(problem)?;
         let known = problem.dirichlet();
-        thin::check(problem)?;
+        thin_layers::check(problem)?;
         self.with_maker(problem, |maker| {
             let nodes: Vec<usize> = (0..known.len()).filter(|&i| known[i].is_none()).collect();
             let mut rows = parallel::try_map_with(nodes.len(), Scratch::default, |scratch, k| {

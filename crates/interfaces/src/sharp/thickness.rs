@@ -1,11 +1,7 @@
 //! How thick the layer round a node is, and the spacing of nodes that would resolve it.
 
 use crate::Problem;
-
-/// Layers and gaps that nodes of a spacing resolve, in units of the spacing. With films of 2 spacings solutions that are
-/// polynomials in every region are exact to round-off at the orders 4 to 8; with those of 1 some clouds leave out nodes
-/// that the fits need, with those of 0.4 all do.
-pub const RESOLVED: f64 = 2.0;
+use crate::thin_layers::RESOLVED;
 
 /// How far it is looked for the end of a layer, in units of the spacing, and in which steps.
 const REACH: f64 = 2.0;

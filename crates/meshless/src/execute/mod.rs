@@ -15,7 +15,7 @@ mod unsteady;
 use std::time::Instant;
 
 use meshless_interfaces::{
-    Discretization, MethodError, RowKind, SystemParams, SystemSolution, diagnose_nodes, sharp, solve,
+    Discretization, MethodError, RowKind, SystemParams, SystemSolution, diagnose_nodes, solve, thin_layers,
 };
 
 use crate::plan::{MethodParams, Plan, Stage};
@@ -175,7 +175,7 @@ fn solve_steady<const D: usize>(
     let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
     let system = solve(&problem, &discretization, &params).map_err(|e| match e {
         MethodError::Solve(_) if matches!(plan.method.params, MethodParams::Sharp(_)) => {
-            sharp::suspect(&problem).map_or(e, |layer| sharp::unresolved(&layer))
+            thin_layers::suspect(&problem).map_or(e, |layer| thin_layers::unresolved(&layer))
         }
         e => e,
     });

@@ -1,6 +1,6 @@
 //! Whether the nodes resolve what lies between two interfaces.
 
-use meshless_interfaces::{Problem, sharp};
+use meshless_interfaces::{Problem, thin_layers};
 
 use crate::Error;
 use crate::plan::{MethodParams, Plan};
@@ -15,12 +15,12 @@ pub(crate) fn thin_layer<const D: usize>(
     problem: &Problem<'_, D>,
 ) -> Result<Option<ThinLayerReport>, Error> {
     let fitted = matches!(plan.method.params, MethodParams::Sharp(_));
-    let layer = if fitted { sharp::thinnest(problem) } else { sharp::unseen(problem)? };
+    let layer = if fitted { thin_layers::thinnest(problem) } else { thin_layers::unseen(problem)? };
     Ok(layer.map(|layer| ThinLayerReport {
         region: scene.regions[layer.region as usize].name.clone(),
         at: layer.at.to_vec(),
         thickness: layer.thickness,
-        resolving_spacing: sharp::resolving_spacing(&layer),
+        resolving_spacing: thin_layers::resolving_spacing(&layer),
         seen: fitted,
     }))
 }

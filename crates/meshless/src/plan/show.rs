@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use meshless_interfaces::sharp;
+use meshless_interfaces::thin_layers;
 use meshless_sparse::{AUTO_RESTART, SolverKind};
 
 use super::{AccuracyPlan, MethodParams, Plan, Stage};
@@ -96,7 +96,7 @@ impl fmt::Display for Plan {
             writeln!(
                 f,
                 "gaps        refined where they are thinner than {:.0} spacings, to spacings of {least:.2e} at least",
-                sharp::RESOLVED
+                thin_layers::RESOLVED
             )?;
         }
         writeln!(f, "solver      {}", self.solver_name())?;

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-use meshless_interfaces::sharp;
+use meshless_interfaces::thin_layers;
 
 use super::accuracy::{AccuracySpec, first_spacing};
 use super::error::SceneError;
@@ -106,7 +106,7 @@ fn gaps(table: &Table<'_>, layout: LayoutName, open: bool) -> Result<Option<GapS
     if open {
         return Err(value.error("in free space nothing has a gap", "leave the key out"));
     }
-    Ok(Some(GapSpec { least: value.positive()?, across: sharp::RESOLVED }))
+    Ok(Some(GapSpec { least: value.positive()?, across: thin_layers::RESOLVED }))
 }
 
 /// Points from a file; how far apart they are can be left to their number.

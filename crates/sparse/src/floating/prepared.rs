@@ -16,8 +16,8 @@ use std::sync::{Arc, OnceLock};
 /// A [`Bordered`] system with what is computed once for all right-hand sides.
 ///
 /// The direct method factorises all equations together. With multigrid, GMRES runs on all of them: one solve for a right-hand side,
-/// whatever the number of extra unknowns. Where these are the constants of a [`Split`](crate::Split), the levels are made in nodal
-/// values; else the Schur complement of rough responses is part of the preconditioner.
+/// whatever the number of extra unknowns. Where these are the constants of a [`Split`](crate::Split), with or without
+/// the incompatibility of a pure Neumann problem, the levels are made in nodal values; else the Schur complement of rough responses is part of the preconditioner.
 /// The other methods solve with `A'` once for each extra unknown and once for the right-hand side, and refine the whole.
 ///
 /// Where multigrid stagnates, elimination by BiCGStab(2) with ILU(0) steps in, and for that, up to

@@ -1,10 +1,17 @@
-//! Layers and gaps that the nodes do not resolve.
+//! Layers and gaps that the nodes do not resolve, or do not see.
+//!
+//! A layer is *seen* where no two neighbouring nodes of one region lie on both sides of it, and *resolved* where it is
+//! [`RESOLVED`] spacings thick. No method is right about a layer that is not seen; the fits of the sharp method want it resolved.
 
 use meshless_geometry::ThinLayer;
 use meshless_neighbors::CellList;
 
-use super::thickness::RESOLVED;
 use crate::{MethodError, Problem, RegionName, adjacent_pairs};
+
+/// Layers and gaps that nodes of a spacing resolve, in units of the spacing. With films of 2 spacings solutions that are
+/// polynomials in every region are exact to round-off at the orders 4 to 8; with those of 1 some clouds leave out nodes
+/// that the fits need, with those of 0.4 all do.
+pub const RESOLVED: f64 = 2.0;
 
 /// How near to the middle of a layer nodes are that may see through it, in spacings.
 const NEAR: f64 = 1.5;
@@ -25,7 +32,7 @@ const NONE_INSIDE: f64 = 1.0;
 /// # Errors
 /// [`MethodError::ThinLayer`] where two neighbouring nodes of one region lie on both sides of a layer: its region would be
 /// taken for connected across, and a fit to both sides by one polynomial would not see the layer.
-pub(super) fn check<const D: usize>(problem: &Problem<'_, D>) -> Result<(), MethodError> {
+pub(crate) fn check<const D: usize>(problem: &Problem<'_, D>) -> Result<(), MethodError> {
     unseen(problem)?.map_or(Ok(()), |layer| Err(unresolved(&layer)))
 }
 
