@@ -74,34 +74,37 @@ impl<T: Real> Work<T> for ToReals<'_, '_, T> {
     }
 }
 
-/// Rows of a spectrum, one for each wave number, in each the packs of two groups of lines.
-pub(crate) struct Spectrum<'a, T> {
-    pub(crate) rows: &'a mut [T],
+/// Rows of a spectrum, one for each wave number, in each the packs of two groups of lines, and of as many more as there are.
+pub(crate) struct Spectrum<R> {
+    pub(crate) rows: R,
     /// Numbers from one row to the next.
     pub(crate) row: usize,
     /// Numbers before the lines in each row.
     pub(crate) at: usize,
 }
 
-/// Twice the spectra of the real lines, from the transform of packs: at wave number k, `z_k` and `z_-k` lie at `places[k]`.
+/// Twice the spectra of the real lines, from transforms of packs: at wave number k, `z_k` and `z_-k` lie at `places[k]`.
 pub(crate) struct Untangle<'a, T> {
+    /// Transforms.
     pub(crate) values: &'a [T],
+    /// Numbers from one to the next.
+    pub(crate) pitch: usize,
     pub(crate) places: &'a [[u32; 2]],
-    pub(crate) spectrum: Spectrum<'a, T>,
+    pub(crate) spectrum: Spectrum<&'a mut [T]>,
 }
 
 impl<T: Real> Work<T> for Untangle<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, s: S) {
+        let pitch = self.pitch / (2 * S::COUNT);
         let pairs = s.packs(self.values).as_chunks::<2>().0;
         let Spectrum { rows, row, at } = self.spectrum;
         for (row, [p, q]) in rows.chunks_exact_mut(row).zip(self.places) {
-            let (z, w) = (pairs[*p as usize], pairs[*q as usize]);
-            let even: Pair<S::Pack> = [s.add(z[0], w[0]), s.sub(z[1], w[1])];
-            let odd: Pair<S::Pack> = [s.add(z[1], w[1]), s.sub(w[0], z[0])];
-            if let [first, second, ..] = s.packs_mut(&mut row[at..]).as_chunks_mut::<2>().0 {
-                *first = even;
-                *second = odd;
+            let (p, q) = (*p as usize, *q as usize);
+            let row = s.packs_mut(&mut row[at..]).as_chunks_mut::<4>().0;
+            for (to, pairs) in row.iter_mut().zip(pairs.chunks(pitch)) {
+                let (z, w) = (pairs[p], pairs[q]);
+                *to = [s.add(z[0], w[0]), s.sub(z[1], w[1]), s.add(z[1], w[1]), s.sub(w[0], z[0])];
             }
         }
     }
@@ -110,29 +113,35 @@ impl<T: Real> Work<T> for Untangle<'_, T> {
 /// The inverse, times a complex factor for each wave number.
 pub(crate) struct Tangle<'a, T> {
     pub(crate) values: &'a mut [T],
+    pub(crate) pitch: usize,
     pub(crate) places: &'a [[u32; 2]],
-    pub(crate) rows: &'a [T],
-    pub(crate) row: usize,
-    pub(crate) at: usize,
+    pub(crate) spectrum: Spectrum<&'a [T]>,
     pub(crate) factors: Option<&'a [[T; 2]]>,
 }
 
 impl<T: Real> Work<T> for Tangle<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, s: S) {
+        let pitch = self.pitch / (2 * S::COUNT);
         let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
-        for (k, (row, [p, q])) in self.rows.chunks_exact(self.row).zip(self.places).enumerate() {
-            let [mut even, mut odd, ..] = *s.packs(&row[self.at..]).as_chunks::<2>().0 else { continue };
-            if let Some(factors) = self.factors {
-                even = times(s, even, factors[k]);
-                odd = times(s, odd, factors[k]);
-            }
-            // The spectrum of a real line is real at both ends, up to round-off.
-            if p == q {
-                pairs[*p as usize] = [even[0], odd[0]];
-            } else {
-                pairs[*p as usize] = [s.sub(even[0], odd[1]), s.add(even[1], odd[0])];
-                pairs[*q as usize] = [s.add(even[0], odd[1]), s.sub(odd[0], even[1])];
+        let Spectrum { rows, row, at } = self.spectrum;
+        for (k, (row, [p, q])) in rows.chunks_exact(row).zip(self.places).enumerate() {
+            let (p, q) = (*p as usize, *q as usize);
+            let row = s.packs(&row[at..]).as_chunks::<4>().0;
+            for (from, pairs) in row.iter().zip(pairs.chunks_mut(pitch)) {
+                let (mut even, mut odd): (Pair<S::Pack>, Pair<S::Pack>) =
+                    ([from[0], from[1]], [from[2], from[3]]);
+                if let Some(factors) = self.factors {
+                    even = times(s, even, factors[k]);
+                    odd = times(s, odd, factors[k]);
+                }
+                // The spectrum of a real line is real at both ends, up to round-off.
+                if p == q {
+                    pairs[p] = [even[0], odd[0]];
+                } else {
+                    pairs[p] = [s.sub(even[0], odd[1]), s.add(even[1], odd[0])];
+                    pairs[q] = [s.add(even[0], odd[1]), s.sub(odd[0], even[1])];
+                }
             }
         }
     }

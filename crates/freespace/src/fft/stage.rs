@@ -49,6 +49,9 @@ impl<T: Real> Work<T> for Blocks<'_, T> {
     fn run<S: Lanes<T>>(self, s: S) {
         let Stage { radix, below, ref factors } = *self.stage;
         let pairs = s.packs_mut(self.values).as_chunks_mut::<2>().0;
+        if below == 1 {
+            return last(s, radix, self.step, pairs);
+        }
         for block in pairs.chunks_exact_mut(radix * below) {
             match (self.step, radix) {
                 (Step::Forward, 2) => forward_two(s, block, factors),
@@ -63,6 +66,37 @@ impl<T: Real> Work<T> for Blocks<'_, T> {
                 (Step::Inverse, _) => inverse_eight(s, block, factors),
             }
         }
+    }
+}
+
+/// Butterflies of neighbours, whose factors are all one.
+macro_rules! whole {
+    ($s:ident, $step:ident, $pairs:ident, $butterfly:ident, $radix:literal, [$($place:literal),*]) => {
+        match $step {
+            Step::Forward => {
+                for x in $pairs.as_chunks_mut::<$radix>().0 {
+                    *x = butterfly::$butterfly($s, *x);
+                }
+            }
+            Step::Inverse => {
+                for x in $pairs.as_chunks_mut::<$radix>().0 {
+                    let y = butterfly::$butterfly($s, [$(swapped(x[$place])),*]);
+                    *x = [$(swapped(y[$place])),*];
+                }
+            }
+        }
+    };
+}
+
+/// The last stage forward, the first one back.
+#[inline(always)]
+fn last<T: Real, S: Lanes<T>>(s: S, radix: usize, step: Step, pairs: &mut [Pair<S::Pack>]) {
+    match radix {
+        2 => whole!(s, step, pairs, two, 2, [0, 1]),
+        3 => whole!(s, step, pairs, three, 3, [0, 1, 2]),
+        4 => whole!(s, step, pairs, four, 4, [0, 1, 2, 3]),
+        5 => whole!(s, step, pairs, five, 5, [0, 1, 2, 3, 4]),
+        _ => whole!(s, step, pairs, eight, 8, [0, 1, 2, 3, 4, 5, 6, 7]),
     }
 }
 

@@ -1,5 +1,7 @@
 //! The first direction, between real lines and half-spectra.
 
+use std::ops::Range;
+
 use super::aligned::Aligned;
 use super::axis::Axis;
 use super::engine::Engine;
@@ -7,11 +9,19 @@ use super::real::Real;
 use super::recipe::{Last, Recipe};
 use crate::fft::{FromColumns, FromReals, MOST, Spectrum, Tangle, ToColumns, ToReals, Untangle};
 
+/// Pairs of packs that are transformed before their spectra are put where they belong, in one go: there as many numbers follow each other, and
+/// each wave number is in another page of memory.
+const PAIRS: usize = 4;
+
+/// Numbers between transforms: the same place of all would fall on the same lines of the cache.
+const GAP: usize = 16;
+
 /// Scratch of one thread. Two packs of lines are the real and the imaginary parts of one.
 pub(super) struct First<'a, T: Real> {
     engine: &'a Engine<T>,
     /// Lines in packs.
     reals: Aligned<T>,
+    /// Their transforms.
     values: Aligned<T>,
     /// The spectrum of two packs, where the second direction is no direction.
     rows: Aligned<T>,
@@ -49,7 +59,7 @@ impl<'a, T: Real> First<'a, T> {
         Self {
             engine,
             reals: Aligned::zeros(x.n * width),
-            values: Aligned::zeros(x.len * width),
+            values: Aligned::zeros((x.len * width + GAP) * PAIRS),
             rows: Aligned::zeros(if engine.is_flat() { 2 * (x.half() + 1) * width } else { 0 }),
             missing: Aligned::zeros(x.n * lanes),
         }
@@ -60,14 +70,14 @@ impl<'a, T: Real> First<'a, T> {
         let engine = self.engine;
         let (lanes, row) = (engine.machine.lanes(), engine.row());
         if !engine.is_flat() {
-            let pairs = 0..engine.axes[1].n.div_ceil(2);
-            return pairs.fold(true, |finite, pair| {
-                let spectrum = Spectrum { rows: slab, row, at: pair * 4 * lanes };
-                self.pair_forward(lines, pair, spectrum) && finite
+            return self.pairs().fold(true, |finite, pairs| {
+                let at = pairs.start * 4 * lanes;
+                self.pairs_forward(lines, pairs, Spectrum { rows: &mut *slab, row, at }) && finite
             });
         }
         let mut rows = std::mem::take(&mut self.rows);
-        let finite = self.pair_forward(lines, 0, Spectrum { rows: &mut rows, row: 4 * lanes, at: 0 });
+        let spectrum = Spectrum { rows: &mut rows[..], row: 4 * lanes, at: 0 };
+        let finite = self.pairs_forward(lines, 0..1, spectrum);
         for part in 0..2 {
             let (values, places) = (&rows[2 * part * lanes..], engine.packs.places());
             let at = 2 * part * lanes * lanes;
@@ -82,8 +92,9 @@ impl<'a, T: Real> First<'a, T> {
         let engine = self.engine;
         let (lanes, row) = (engine.machine.lanes(), engine.row());
         if !engine.is_flat() {
-            for pair in 0..engine.axes[1].n.div_ceil(2) {
-                self.pair_inverse(slab, [row, 4 * pair * lanes], factors, lines, pair);
+            for pairs in self.pairs() {
+                let spectrum = Spectrum { rows: slab, row, at: pairs.start * 4 * lanes };
+                self.pairs_inverse(spectrum, factors, lines, pairs);
             }
             return;
         }
@@ -93,8 +104,19 @@ impl<'a, T: Real> First<'a, T> {
             let at = 2 * part * lanes * lanes;
             engine.machine.run(FromColumns { columns: slab, places, pitch: row, at, values });
         }
-        self.pair_inverse(&rows, [4 * lanes, 0], factors, lines, 0);
+        self.pairs_inverse(Spectrum { rows: &rows[..], row: 4 * lanes, at: 0 }, factors, lines, 0..1);
         self.rows = rows;
+    }
+
+    /// The pairs of packs of a slab, those together that are put in their places together.
+    fn pairs(&self) -> impl Iterator<Item = Range<usize>> + use<T> {
+        let count = self.engine.axes[1].n.div_ceil(2);
+        (0..count).step_by(PAIRS).map(move |start| start..(start + PAIRS).min(count))
+    }
+
+    /// Numbers of a transform, from one to the next.
+    fn pitch(&self) -> usize {
+        2 * self.engine.machine.lanes() * self.engine.axes[0].len + GAP
     }
 
     /// The lines of one of the packs that are transformed together.
@@ -115,33 +137,51 @@ impl<'a, T: Real> First<'a, T> {
     }
 
     /// What is missing in a pack is zero: lines share transforms, in which the larger one leaves its round-off in the other.
-    fn pair_forward(&mut self, lines: &[T], pair: usize, spectrum: Spectrum<'_, T>) -> bool {
-        let (machine, x) = (&self.engine.machine, &self.engine.axes[0]);
-        let lanes = machine.lanes();
-        for part in 0..2 {
-            let mut these = [&self.missing[..x.n]; MOST];
-            these[..lanes].iter_mut().zip(self.lines(lines, pair, part)).for_each(|(to, line)| *to = line);
-            let (lines, values) = (&these[..lanes], &mut self.reals[..]);
-            machine.run(FromReals { lines, count: x.own(), values, first: part, stride: 2 });
+    fn pairs_forward(&mut self, lines: &[T], pairs: Range<usize>, spectrum: Spectrum<&mut [T]>) -> bool {
+        let (machine, x, pitch) = (&self.engine.machine, &self.engine.axes[0], self.pitch());
+        let (lanes, count) = (machine.lanes(), pairs.len());
+        let mut all = std::mem::take(&mut self.values);
+        for (pair, values) in pairs.zip(all.chunks_exact_mut(pitch)) {
+            for part in 0..2 {
+                let mut these = [&self.missing[..x.n]; MOST];
+                let present = self.lines(lines, pair, part);
+                these[..lanes].iter_mut().zip(present).for_each(|(to, line)| *to = line);
+                let (lines, values) = (&these[..lanes], &mut self.reals[..]);
+                machine.run(FromReals { lines, count: x.own(), values, first: part, stride: 2 });
+            }
+            x.forward(machine, &self.reals, &mut values[..pitch - GAP]);
         }
-        x.forward(machine, &self.reals, &mut self.values);
-        machine.run(Untangle { values: &self.values, places: x.lines.opposite(), spectrum });
-        self.values[..2 * lanes].iter().all(|sum| sum.widened().is_finite())
+        let (values, places) = (&all[..count * pitch], x.lines.opposite());
+        machine.run(Untangle { values, pitch, places, spectrum });
+        let mut sums = values.chunks_exact(pitch).flat_map(|values| &values[..2 * lanes]);
+        let finite = sums.all(|sum| sum.widened().is_finite());
+        self.values = all;
+        finite
     }
 
-    fn pair_inverse(
+    fn pairs_inverse(
         &mut self,
-        rows: &[T],
-        [row, at]: [usize; 2],
+        spectrum: Spectrum<&[T]>,
         factors: &Factors<T>,
         lines: &mut [T],
-        pair: usize,
+        pairs: Range<usize>,
     ) {
+        let (machine, x, pitch) = (&self.engine.machine, &self.engine.axes[0], self.pitch());
+        let places = x.lines.opposite();
+        let mut all = std::mem::take(&mut self.values);
+        let values = &mut all[..pairs.len() * pitch];
+        machine.run(Tangle { values, pitch, places, spectrum, factors: factors.0.as_deref() });
+        for (pair, values) in pairs.zip(values.chunks_exact_mut(pitch)) {
+            x.inverse(machine, &mut values[..pitch - GAP], &mut self.reals);
+            self.reals_to_lines(lines, pair);
+        }
+        self.values = all;
+    }
+
+    /// The real lines of a pair of packs to where they belong.
+    fn reals_to_lines(&mut self, lines: &mut [T], pair: usize) {
         let (machine, x) = (&self.engine.machine, &self.engine.axes[0]);
         let lanes = machine.lanes();
-        let (values, places) = (&mut self.values[..], x.lines.opposite());
-        machine.run(Tangle { values, places, rows, row, at, factors: factors.0.as_deref() });
-        x.inverse(machine, values, &mut self.reals);
         for part in 0..2 {
             let [stride, line] = self.places(pair, part);
             let (skip, within) = if self.engine.is_flat() { (line, 0) } else { (0, line) };
