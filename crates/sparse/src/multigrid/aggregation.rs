@@ -14,16 +14,12 @@ pub(crate) struct Aggregates {
     pub(crate) count: usize,
 }
 
-/// Rows of a block that is gone through in order, beside other blocks. Their size, not the number of threads, decides about the
-/// result; what is lost are the aggregates that would lie across the ends of blocks.
-const BLOCK: usize = 65_536;
-
 /// Standard aggregation (Vaněk, Mandel and Brezina, Computing 56, 1996, algorithm 2): nodes in order found an aggregate
 /// with all their strong neighbours if these are still free; what is left joins the aggregate to which it is tied most;
 /// the rest founds aggregates with the free neighbours it has. Nodes whose bonds are strong one way only, or not at all,
 /// join that of their largest entry, with columns measured in `units`; settled ones stay out.
 pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Graph) -> Aggregates {
-    let (founded, mut count) = founded(graph, BLOCK);
+    let (founded, mut count) = founded(graph);
     let join = |i: usize| {
         let tied = graph.of(i).filter(|(j, _)| founded[*j] != NONE);
         let own = Some(founded[i]).filter(|&k| k != NONE);
@@ -45,37 +41,21 @@ pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Grap
     Aggregates { of, count: count as usize }
 }
 
-/// The aggregates of nodes with all their strong neighbours, block by block in parallel, and how many these are.
-pub(super) fn founded(graph: &Graph, block: usize) -> (Vec<u32>, u32) {
+/// The aggregates of nodes with all their strong neighbours, and how many these are. One front goes through all nodes, in 1 to 2 % of
+/// the time of a set-up: where blocks of nodes meet that are gone through side by side, aggregates do not fit together, and each level
+/// makes that worse (`docs/multigrid.md`).
+pub(super) fn founded(graph: &Graph) -> (Vec<u32>, u32) {
     let mut of = vec![NONE; graph.len()];
-    let mut counts = vec![0; of.len().div_ceil(block)];
-    parallel::for_each_task(
-        of.chunks_mut(block).zip(&mut counts).enumerate().collect(),
-        |(k, (of, counted))| {
-            let first = k * block;
-            let mut count: u32 = 0;
-            for i in 0..of.len() {
-                let neighbors = graph.neighbors(first + i);
-                let place = |j: u32| (j as usize).wrapping_sub(first);
-                let free = |&j: &u32| of.get(place(j)) == Some(&NONE);
-                if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(free) {
-                    of[i] = count;
-                    neighbors.iter().for_each(|&j| of[place(j)] = count);
-                    count += 1;
-                }
-            }
-            *counted = count;
-        },
-    );
-    let before = counts.iter().scan(0, |sum, count| {
-        *sum += count;
-        Some(*sum - count)
-    });
-    let before: Vec<u32> = before.collect();
-    for (of, before) in of.chunks_mut(block).zip(&before) {
-        of.iter_mut().filter(|k| **k != NONE).for_each(|k| *k += before);
+    let mut count = 0;
+    for i in 0..of.len() {
+        let neighbors = graph.neighbors(i);
+        if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(|&j| of[j as usize] == NONE) {
+            of[i] = count;
+            neighbors.iter().for_each(|&j| of[j as usize] = count);
+            count += 1;
+        }
     }
-    (of, counts.iter().sum())
+    (of, count)
 }
 
 /// The stronger of two neighbours, the first of equals.

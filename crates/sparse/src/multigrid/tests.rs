@@ -87,20 +87,21 @@ proptest! {
     }
 
     #[test]
-    fn aggregates_of_blocks_are_neighbourhoods_that_do_not_overlap(
+    fn founded_aggregates_are_neighbourhoods_that_do_not_overlap_and_leave_no_room_for_more(
         bonds in prop::collection::vec((0usize..7, -3.0..3.0, -3.0..3.0), 200..400),
-        block in 5usize..150,
     ) {
         let a = m_matrix(100, &bonds, false);
         let graph = strength::symmetric(&a, None, 0.25);
-        let (of, count) = aggregation::founded(&graph, block);
+        let (of, count) = aggregation::founded(&graph);
         let mut founders = vec![0; count as usize];
         for i in 0..100 {
-            let whole = graph.neighbors(i).iter().all(|&j| of[j as usize] == of[i] && j as usize / block == i / block);
+            let whole = graph.neighbors(i).iter().all(|&j| of[j as usize] == of[i]);
             let size = of.iter().filter(|&&k| k == of[i]).count();
             if of[i] != aggregation::NONE && whole && size == 1 + graph.neighbors(i).len() {
                 founders[of[i] as usize] += 1;
             }
+            let room = graph.neighbors(i).iter().all(|&j| of[j as usize] == aggregation::NONE);
+            prop_assert!(of[i] != aggregation::NONE || graph.neighbors(i).is_empty() || !room);
         }
         prop_assert!(founders.iter().all(|&n| n > 0));
     }
