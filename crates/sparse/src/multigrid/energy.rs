@@ -21,7 +21,13 @@ const STEPS: usize = 4;
 /// # Errors
 /// [`MatrixError::NotFinite`] where `D^-1 A` overflows.
 pub(crate) fn minimized(a: &Csr, graph: &Graph, aggregates: &Aggregates) -> Result<Csr, MatrixError> {
-    let start = prolongation::smoothed(&DifferenceMatrix::from_csr(a)?, None, graph, aggregates);
+    let start = prolongation::smoothed(
+        &DifferenceMatrix::from_csr(a)?,
+        None,
+        graph,
+        aggregates,
+        prolongation::Step::LONG,
+    );
     let inverse: Vec<f64> = a.diagonal().into_iter().map(|d| if d == 0.0 { 1.0 } else { 1.0 / d }).collect();
     let symmetric = a.is_symmetric();
     let scaled = if symmetric { None } else { Some(a.row_scaled(&inverse)?) };

@@ -34,6 +34,7 @@ pub use params::{
     Candidate, Coarsening, CycleKind, HierarchyInfo, MultigridParams, ProlongationKind, Restriction,
     SmootherKind, StrengthKind,
 };
+use prolongation::Step;
 use smoother::Smoother;
 use std::sync::Arc;
 
@@ -153,7 +154,10 @@ impl Multigrid {
             galerkin::product(&a, a.row_sums(), None, &p, &r)
         };
         coarse.require_finite()?;
-        let smoother = Smoother::new(self.params.smoother, &a)?;
+        let smoother = match self.levels.len() {
+            0 => Smoother::new(self.params.smoother, &a)?,
+            _ => Smoother::of_coarse(self.params.smoother, &a)?,
+        };
         self.info.levels.push((coarse.n(), coarse.nnz() + coarse.n()));
         self.info.bytes += coarse.bytes() + p.bytes() + r.bytes() + smoother.bytes();
         self.levels.push(Level { a, p, r, smoother });
@@ -196,11 +200,12 @@ fn transfers(
             if own || minimizing {
                 let weight = |i: usize| weights.map_or(1.0, |w| w[i]);
                 let balances = a.scaled_csr(weight, unit);
+                let step = if own { Step::SAFE } else { Step::LONG };
                 let smoothed = |balances: &Csr| match minimizing {
                     true => energy::minimized(balances, &graph, &aggregates),
                     false => {
                         let rows = DifferenceMatrix::from_csr(balances)?;
-                        Ok(prolongation::smoothed(&rows, None, &graph, &aggregates))
+                        Ok(prolongation::smoothed(&rows, None, &graph, &aggregates, step))
                     }
                 };
                 let p = smoothed(&balances)?;
@@ -210,7 +215,7 @@ fn transfers(
                 }
                 p
             } else {
-                prolongation::smoothed(a, units, &graph, &aggregates)
+                prolongation::smoothed(a, units, &graph, &aggregates, Step::LONG)
             }
         }
         Coarsening::PairwiseAggregation => {

@@ -13,6 +13,22 @@ const DAMPING: f64 = 0.8;
 /// Weights below this go to the aggregate that the node is in: coarse matrices have fewer entries.
 const LEAST_WEIGHT: f64 = 0.06;
 
+/// The Jacobi step that smooths the prolongation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    damping: f64,
+    /// Weights below this are lumped.
+    least_weight: f64,
+}
+
+impl Step {
+    /// For rows whose entries outside of the diagonal are mostly of one sign.
+    pub(crate) const LONG: Self = Self { damping: DAMPING, least_weight: LEAST_WEIGHT };
+    /// For rows with large entries of either sign, those that need a restriction of their own: their eigenvalues are bounded by
+    /// Gershgorin's bound alone.
+    pub(crate) const SAFE: Self = Self { damping: 2.0 / 3.0, least_weight: 0.0 };
+}
+
 /// The prolongation that is constant on aggregates.
 pub(crate) fn tentative(aggregates: &Aggregates) -> Csr {
     computed_rows(aggregates.of.len(), aggregates.count, |i, places, block| {
@@ -30,6 +46,7 @@ pub(crate) fn smoothed(
     units: Option<&[f64]>,
     graph: &Graph,
     aggregates: &Aggregates,
+    step: Step,
 ) -> Csr {
     let of = &aggregates.of;
     let unit = |j: u32| units.map_or(1.0, |c| c[j as usize]);
@@ -55,13 +72,13 @@ pub(crate) fn smoothed(
         for_each_common(columns, values, strong, |j, a_ij| {
             let other = of[j as usize];
             if other != NONE && other != own {
-                let weight = -DAMPING * a_ij * unit(j) / size;
+                let weight = -step.damping * a_ij * unit(j) / size;
                 block.add(places, other, weight);
                 kept -= weight;
             }
         });
         block.add(places, own, kept);
-        block.lump(places, own, LEAST_WEIGHT);
+        block.lump(places, own, step.least_weight);
     })
 }
 

@@ -43,6 +43,14 @@ impl Smoother {
         })
     }
 
+    /// The same for a matrix that is a product with the prolongation.
+    pub(crate) fn of_coarse(kind: SmootherKind, a: &DifferenceMatrix) -> Result<Self, MatrixError> {
+        match kind {
+            SmootherKind::Ilu0 => Ok(Self::Ilu(BlockIlu::of_coarse(a.to_csr())?)),
+            kind => Self::new(kind, a),
+        }
+    }
+
     /// Bytes that it keeps.
     pub(crate) fn bytes(&self) -> usize {
         match self {

@@ -27,7 +27,7 @@ fn m_matrix(n: usize, bonds: &[(usize, f64, f64)], symmetric: bool) -> Differenc
 fn levels(a: &DifferenceMatrix) -> (strength::Graph, Csr, Csr, Vec<f64>) {
     let graph = strength::symmetric(a, None, 0.25);
     let aggregates = aggregation::standard(a, None, &graph);
-    let p = prolongation::smoothed(a, None, &graph, &aggregates);
+    let p = prolongation::smoothed(a, None, &graph, &aggregates, Step::LONG);
     (graph, p.clone(), restriction(&p, None), galerkin::row_sums(a, None, &[]))
 }
 
@@ -69,7 +69,7 @@ proptest! {
         let rows = m_matrix(150, &bonds, symmetric);
         let graph = strength::symmetric(&rows, None, 0.25);
         let aggregates = aggregation::standard(&rows, None, &graph);
-        let jacobi = prolongation::smoothed(&rows, None, &graph, &aggregates);
+        let jacobi = prolongation::smoothed(&rows, None, &graph, &aggregates, Step::LONG);
         let a = rows.to_csr();
         let p = energy::minimized(&a, &graph, &aggregates).unwrap();
         prop_assert_eq!((p.offsets(), p.indices()), (jacobi.offsets(), jacobi.indices()));
@@ -177,7 +177,7 @@ fn at_a_high_contrast_the_constant_of_every_region_is_reproduced() {
     let (a, indicator) = disc(40, 1e4);
     let graph = strength::symmetric(&a, None, 0.25);
     let aggregates = aggregation::standard(&a, None, &graph);
-    let jacobi = prolongation::smoothed(&a, None, &graph, &aggregates);
+    let jacobi = prolongation::smoothed(&a, None, &graph, &aggregates, Step::LONG);
     for p in [jacobi, energy::minimized(&a.to_csr(), &graph, &aggregates).unwrap()] {
         let mut coarse = vec![0.0; aggregates.count];
         (0..a.n()).for_each(|i| coarse[aggregates.of[i] as usize] = indicator[i]);
