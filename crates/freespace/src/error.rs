@@ -41,7 +41,7 @@ pub enum FreeSpaceError {
         needed: f64,
     },
     /// A source of the wrong length.
-    #[error("the {what} has {got} values, the mesh has {expected} points")]
+    #[error("the {what} has {got} values, {expected} are needed")]
     Length {
         /// Which array.
         what: &'static str,
@@ -51,7 +51,7 @@ pub enum FreeSpaceError {
         expected: usize,
     },
     /// A value that is not finite.
-    #[error("the {what} is {value} at point {index} of the mesh; values must be finite")]
+    #[error("value {index} of the {what} is {value}; values must be finite")]
     NotFinite {
         /// Which array.
         what: &'static str,
@@ -87,6 +87,19 @@ pub enum FreeSpaceError {
         /// What was asked for.
         tolerance: f64,
         /// The error that is expected of the best kernel.
+        error: f64,
+    },
+    /// Patches that would have to be finer than allowed.
+    #[error(
+        "after {levels} levels of patches the estimated error is {error:e} of the largest value, above the tolerance {tolerance:e}; allow more \
+         levels, or make the source smoother"
+    )]
+    Levels {
+        /// Levels that were allowed.
+        levels: usize,
+        /// What was asked for.
+        tolerance: f64,
+        /// The largest estimate on the finest patches.
         error: f64,
     },
     /// A source that no periodic potential belongs to.

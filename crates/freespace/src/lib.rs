@@ -15,5 +15,8 @@ pub use kernel::{BandPass, Gaussian, Kernel, Radial, Spectral, Truncated, defaul
 pub use mesh::{Centring, Mesh};
 pub use particles::Spread;
 pub use plan::{Boundary, Face, Output, Plan, PlanParams, Real, Workspace};
-pub use refine::{Fields, Patch, RefineParams, RefinedPlan, Superposition, m4_prime, m6_star, suggest};
+pub use refine::{
+    Fields, Patch, RefineParams, RefinedPlan, Superposition, TreeParams, m4_prime, m6_star, suggest,
+    suggest_tree,
+};
 pub use spectrum::{Choice, Spectrum};

@@ -15,6 +15,9 @@ pub enum Centring {
 /// Fractions of the spacing that points of nested meshes lie at: all ratios up to 16, and half of them.
 const SUBDIVISIONS: f64 = 1_441_440.0;
 
+/// Spacings of which volumes of cells, squares of distances and their inverses are numbers.
+const SPACINGS: std::ops::RangeInclusive<f64> = 1e-90..=1e90;
+
 /// A regular mesh with cells of any aspect ratio. Arrays of values have x running fastest, then y, then z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mesh<const D: usize> {
@@ -28,7 +31,7 @@ impl<const D: usize> Mesh<D> {
     /// `cells` cells of size `spacing` from the corner `min`.
     ///
     /// # Errors
-    /// No cells, a spacing that is not positive and finite, or more points than can be counted.
+    /// No cells, a spacing that is not positive and finite or whose cube is not, or more points than can be counted.
     pub fn new(
         min: [f64; D],
         spacing: [f64; D],
@@ -44,6 +47,13 @@ impl<const D: usize> Mesh<D> {
                 });
             }
             FreeSpaceError::unless_positive("spacing", spacing[axis])?;
+            if !SPACINGS.contains(&spacing[axis]) {
+                return Err(FreeSpaceError::Invalid {
+                    what: "spacing",
+                    value: spacing[axis],
+                    expected: "between 1e-90 and 1e90: take another unit of length",
+                });
+            }
             if cells[axis] == 0 {
                 return Err(FreeSpaceError::NoCells { axis });
             }
@@ -55,9 +65,10 @@ impl<const D: usize> Mesh<D> {
         // Padding doubles every direction; a complex number has 16 bytes.
         let bytes = points.iter().try_fold(16_usize, |all, &n| n.checked_mul(2)?.checked_mul(all));
         if bytes.is_none() {
+            let megabytes: f64 = points.iter().fold(16.0 / 1e6, |all, &n| all * 2.0 * n as f64);
             return Err(FreeSpaceError::Memory {
-                needed: u64::MAX >> 20,
-                available: usize::MAX as u64 >> 20,
+                needed: megabytes as u64,
+                available: (usize::MAX as f64 / 1e6) as u64,
             });
         }
         Ok(Self { min, spacing, points, centring })
@@ -179,8 +190,11 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// The largest magnitude of `values` at the outermost points relative to the largest of all: a source should vanish
-    /// at the edge of its box, since what it has beyond is left out. 0 for values that are zero everywhere.
+    /// at the edge of its box, since what it has beyond is left out. 0 for values that are zero everywhere, NaN where one is.
     pub fn edge_ratio(&self, values: &[f64]) -> f64 {
+        if values.iter().any(|v| v.is_nan()) {
+            return f64::NAN;
+        }
         let (mut edge, mut all) = (0.0_f64, 0.0_f64);
         for (index, value) in values.iter().enumerate() {
             let i = self.indices(index);

@@ -32,6 +32,8 @@ pub struct Spectrum {
     /// Magnitude of the wave number and sum of the squares there.
     shells: Vec<(f64, f64)>,
     spacing: f64,
+    /// Whether it is the same in all directions, up to round-off.
+    equal_sides: bool,
     dimension: usize,
     /// Of a vector field, the part that is a gradient.
     gradient: Option<f64>,
@@ -68,7 +70,8 @@ impl Spectrum {
 
     fn nothing<const D: usize>(mesh: &Mesh<D>) -> Self {
         let spacing = mesh.spacing().into_iter().fold(0.0, f64::max);
-        Self { shells: Vec::new(), spacing, dimension: D, gradient: None }
+        let equal_sides = mesh.spacing().iter().all(|h| *h > (1.0 - 1e-9) * spacing);
+        Self { shells: Vec::new(), spacing, equal_sides, dimension: D, gradient: None }
     }
 
     /// Shells of one mesh are the same.
@@ -167,7 +170,8 @@ impl Spectrum {
         best
     }
 
-    /// The same, if it meets `tolerance`, a relative L2 error of phi.
+    /// The same, if it meets `tolerance`, a relative L2 error of phi. If not, a kernel without smoothing, which leaves out only what the mesh does
+    /// not resolve, but has no estimate of its error point by point: spectral for cells with equal sides, truncated for others.
     ///
     /// # Errors
     /// [`FreeSpaceError::Tolerance`] with the error that this mesh allows.
@@ -175,10 +179,14 @@ impl Spectrum {
         FreeSpaceError::unless_positive("tolerance", tolerance)?;
         let best = self.best();
         if best.error <= tolerance {
-            Ok(best)
-        } else {
-            Err(FreeSpaceError::Tolerance { tolerance, error: best.error })
+            return Ok(best);
         }
+        let kernel = if self.equal_sides { Kernel::Spectral } else { Kernel::Truncated };
+        let sharp = Choice { kernel, error: self.error(kernel) };
+        if sharp.error <= tolerance {
+            return Ok(sharp);
+        }
+        Err(FreeSpaceError::Tolerance { tolerance, error: best.error.min(sharp.error) })
     }
 }
 

@@ -88,6 +88,16 @@ fn the_spectrum_predicts_errors_and_finds_a_good_kernel() {
     let usual = measured(Kernel::Gaussian { order: 10, smoothing: Some(2.0) });
     assert!(measured(best.kernel) < 0.1 * usual, "{best:?}: {:e} for {usual:e}", measured(best.kernel));
     assert!(spectrum.best_for(1e-5).is_ok());
+    // Where no smoothing is good enough, none is taken.
+    let tolerance = spectrum.error(Kernel::Spectral);
+    assert!(tolerance < 0.1 * best.error, "{tolerance:e} for {:e}", best.error);
+    let sharp = spectrum.best_for(tolerance).expect("a kernel");
+    assert!(sharp.kernel == Kernel::Spectral && measured(sharp.kernel) < tolerance);
+    let long = Mesh::of_box([-1.0; 3], [1.0; 3], [32, 32, 40], Centring::Cell).expect("a mesh");
+    let of = |p: [f64; 3]| (-p.iter().map(|x| x * x).sum::<f64>() / (2.0 * 0.13 * 0.13)).exp();
+    let spectrum_of_long = Spectrum::new(&long, &long.sample(of)).expect("a spectrum");
+    let tolerance = spectrum_of_long.error(Kernel::Truncated);
+    assert_eq!(spectrum_of_long.best_for(tolerance).expect("a kernel").kernel, Kernel::Truncated);
     assert!(matches!(spectrum.best_for(1e-16), Err(FreeSpaceError::Tolerance { .. })));
 }
 

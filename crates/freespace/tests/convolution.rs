@@ -277,7 +277,7 @@ fn mistakes_are_errors_that_say_what_was_wrong() {
     let mut source = vec![0.0; 64];
     assert!(said(plan.potential(&source[1..])).contains("63 values"));
     source[9] = f64::NAN;
-    assert!(said(plan.potential(&source)).contains("point 9"));
+    assert!(said(plan.potential(&source)).contains("value 9 of the source"));
     source[9] = 1.0;
     let solve = |wanted: Output| {
         let error = plan.solve(&[&source], &[wanted], &mut Workspace::default(), &mut Vec::new());
@@ -292,6 +292,14 @@ fn mistakes_are_errors_that_say_what_was_wrong() {
     );
     assert!(Mesh::<2>::of_box([0.0; 2], [1.0, 0.0], [8, 8], Centring::Cell).is_err());
     assert!(Mesh::<3>::of_box([0.0; 3], [1.0; 3], [usize::MAX / 2; 3], Centring::Cell).is_err());
+    let phi = [Output::Potential { source: 0 }];
+    let nowhere = [0.0, f64::NAN];
+    let shifted = plan.solve_shifted(&[&source], &phi, nowhere, &mut Workspace::default(), &mut Vec::new());
+    assert!(matches!(shifted, Err(FreeSpaceError::Invalid { what: "shift", .. })), "{shifted:?}");
+    assert!(mesh.edge_ratio(&[0.0, f64::NAN]).is_nan());
+    for spacing in [1e-120, 1e120] {
+        assert!(Mesh::<3>::new([0.0; 3], [spacing; 3], [8; 3], Centring::Cell).is_err());
+    }
     let limited = PlanParams { memory_mb: Some(10), ..PlanParams::default() };
     let large = Mesh::of_box([0.0; 3], [1.0; 3], [128; 3], Centring::Cell).expect("a mesh");
     assert!(matches!(Plan::<3>::new(&large, limited), Err(FreeSpaceError::Memory { available: 10, .. })));

@@ -1,8 +1,10 @@
 //! Patches against uniform fine meshes.
 
+use std::f64::consts::PI;
+
 use meshless_freespace::{
     Centring, FreeSpaceError, Kernel, Mesh, Output, Patch, Plan, RefineParams, RefinedPlan, Superposition,
-    Workspace, suggest,
+    TreeParams, Workspace, suggest, suggest_tree,
 };
 use proptest::prelude::*;
 
@@ -196,6 +198,87 @@ fn the_estimate_chooses_patches_to_a_tolerance() {
     }
 }
 
+const EULER: f64 = 0.577_215_664_901_532_9;
+
+/// `sum (-1)^(k+1) x^k / (k k!)`, beyond by the continued fraction of E1.
+fn ein(x: f64) -> f64 {
+    if x < 2.0 {
+        let terms = (1..40).scan(-1.0, |power, k| {
+            *power *= -x / f64::from(k);
+            Some(*power / f64::from(k))
+        });
+        return terms.sum();
+    }
+    let fraction = (1..60).rev().fold(x, |rest, k| x + f64::from(k) / (1.0 + f64::from(k) / rest));
+    (-x).exp() / fraction + x.ln() + EULER
+}
+
+/// Charges of 1, -0.7 and 0.4 with Gaussian profiles of three widths, and their potential in the plane.
+const THREE: [(f64, f64, [f64; 2]); 3] =
+    [(1.0, 0.12, [0.0, 0.1]), (-0.7, 0.045, [-0.3, -0.2]), (0.4, 0.016, [0.25, 0.3])];
+
+/// `r^2 / 2 w^2` of each.
+fn three(p: [f64; 2]) -> [f64; 3] {
+    THREE.map(|(_, width, [a, b])| ((p[0] - a).powi(2) + (p[1] - b).powi(2)) / (2.0 * width * width))
+}
+
+fn three_charges(p: [f64; 2]) -> f64 {
+    let of = |(x, (charge, width, _)): (f64, (f64, f64, [f64; 2]))| charge * (-x).exp() / (width * width);
+    three(p).into_iter().zip(THREE).map(of).sum::<f64>() / (2.0 * PI)
+}
+
+fn their_potential(p: [f64; 2]) -> f64 {
+    let of = |(x, (charge, width, _)): (f64, (f64, f64, [f64; 2]))| {
+        charge * ((2.0 * width * width).ln() - EULER + ein(x))
+    };
+    -three(p).into_iter().zip(THREE).map(of).sum::<f64>() / (4.0 * PI)
+}
+
+/// Trees of as many levels as three widths of a source need: the tolerance holds for the true error at every point that counts, with a
+/// small part of the points that one mesh would need.
+#[test]
+fn the_estimate_chooses_a_tree_to_a_tolerance() {
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [256; 2], Centring::Cell).expect("a mesh");
+    for (tolerance, order, most) in [(1e-2, 4, 0.5), (1e-4, 4, 0.1), (1e-6, 6, 0.1)] {
+        let refine = RefineParams { order, ..TreeParams::default().refine };
+        let params = TreeParams { tolerance, refine, ..TreeParams::default() };
+        let tree = suggest_tree(&base, three_charges, params).expect("a tree");
+        let plan = RefinedPlan::new(&base, &tree, refine).expect("a plan");
+        let fields = solve(&plan, three_charges, &[Output::Potential { source: 0 }]);
+        let (mut worst, mut largest, mut finest) = (0.0_f64, 0.0_f64, f64::INFINITY);
+        for (index, field) in fields.iter().enumerate() {
+            let mesh = plan.mesh(index);
+            finest = finest.min(mesh.spacing()[0]);
+            let finer: Vec<&Mesh<2>> = plan.patches_of(index).map(|i| plan.mesh(i)).collect();
+            let inside = |p: [f64; 2], m: &Mesh<2>| (0..2).all(|a| p[a] > m.min()[a] && p[a] < m.max()[a]);
+            for (point, value) in field[0].iter().enumerate() {
+                let p = mesh.point(point);
+                let exact = their_potential(p);
+                largest = largest.max(exact.abs());
+                if !finer.iter().any(|m| inside(p, m)) {
+                    worst = worst.max((value - exact).abs());
+                }
+            }
+        }
+        let sampled: usize = (0..plan.len()).map(|i| plan.source_mesh(i).len()).sum();
+        let part = sampled as f64 * (finest / 2.0).powi(2);
+        assert!(worst < tolerance * largest, "{tolerance:e}: {:e}", worst / largest);
+        assert!(part < most, "{tolerance:e}: {part} of the points of one mesh");
+    }
+}
+
+#[test]
+fn trees_that_cannot_be_are_refused() {
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [64; 2], Centring::Cell).expect("a mesh");
+    let said = suggest_tree(&base, three_charges, TreeParams::default());
+    assert!(matches!(said, Err(FreeSpaceError::Tolerance { .. })), "{said:?}");
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [256; 2], Centring::Cell).expect("a mesh");
+    let said = suggest_tree(&base, three_charges, TreeParams { levels: 1, ..TreeParams::default() });
+    assert!(matches!(said, Err(FreeSpaceError::Levels { levels: 1, .. })), "{said:?}");
+    let nothing = suggest_tree(&base, |_| 0.0, TreeParams::default());
+    assert_eq!(nothing, Ok(Vec::new()));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(6))]
 
@@ -218,6 +301,8 @@ fn patches_that_cannot_be_are_refused() {
     };
     let good = Patch { parent: None, first: [6; 2], cells: [4; 2], ratio: 2 };
     assert!(said(&[Patch { ratio: 1, ..good }]).contains("ratio is 1"));
+    let huge = RefinedPlan::new(&base, &[Patch { ratio: usize::MAX, ..good }], RefineParams::default());
+    assert!(matches!(huge, Err(FreeSpaceError::Memory { .. })), "{huge:?}");
     assert!(said(&[Patch { first: [6, 14], ..good }]).contains("direction 1, which has 16"));
     assert!(said(&[Patch { first: [1, 6], ..good }]).contains("too close"));
     assert!(said(&[Patch { parent: Some(0), ..good }]).contains("does not come before"));

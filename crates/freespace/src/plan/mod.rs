@@ -225,6 +225,10 @@ impl<const D: usize, T: Real> Plan<D, T> {
             }
             self.check_mean(source)?;
         }
+        let shifts = wanted.iter().flat_map(|(_, shift)| shift);
+        if let Some(&value) = shifts.into_iter().find(|s| !s.is_finite()) {
+            return Err(FreeSpaceError::Invalid { what: "shift", value, expected: "finite" });
+        }
         let wanted: Vec<Wanted> = wanted
             .iter()
             .map(|&(output, shift)| self.wanted(output, shift, sources.len()))

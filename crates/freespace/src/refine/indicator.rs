@@ -1,18 +1,21 @@
 //! Where to refine.
 
 use crate::error::FreeSpaceError;
+use crate::kernel::{BandPass, Kernel};
 use crate::mesh::Mesh;
+use crate::plan::{Output, Plan, Workspace};
+use crate::spectrum::Spectrum;
 
-use super::Patch;
-
-/// Cells of the blocks that are refined or not.
-const BLOCK: usize = 8;
+use super::boxes::Blocks;
+use super::taper::{TAPER, taper};
+use super::{Patch, RefineParams, SMOOTHING, part};
 
 /// Patches of the base mesh that cover every cell in which `error`, the estimate of a solve on it, exceeds `tolerance` times
-/// the largest magnitude of `field`, and the cells around it: blocks of eight cells, joined to boxes.
+/// the largest magnitude of `field`, and the cells around it: blocks of eight cells, joined to boxes. One level; for as many as a
+/// tolerance needs, [`suggest_tree`].
 ///
 /// # Errors
-/// Arrays of the wrong length, or a tolerance that is not positive.
+/// Arrays of the wrong length, a tolerance that is not positive, or a ratio below 2.
 pub fn suggest<const D: usize>(
     mesh: &Mesh<D>,
     error: &[f64],
@@ -24,63 +27,147 @@ pub fn suggest<const D: usize>(
     crate::plan::check_values("estimate of the error", error, mesh.len())?;
     crate::plan::check_values("field", field, mesh.len())?;
     let limit = tolerance * field.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let blocks = mesh.cells().map(|n| n.div_ceil(BLOCK));
-    let count: usize = blocks.iter().product();
-    let mut marked = vec![false; count];
-    for (point, _) in error.iter().enumerate().filter(|(_, e)| e.abs() > limit) {
-        let i = mesh.indices(point);
-        let block: [usize; D] = std::array::from_fn(|a| (i[a] / BLOCK).min(blocks[a] - 1));
-        marked[place(block, blocks)] = true;
+    patches(mesh, None, error, limit, ratio, &RefineParams::default())
+}
+
+/// Patches of a mesh, which is that of a patch or the base, where `error` is above `limit`.
+fn patches<const D: usize>(
+    mesh: &Mesh<D>,
+    parent: Option<usize>,
+    error: &[f64],
+    limit: f64,
+    ratio: usize,
+    params: &RefineParams,
+) -> Result<Vec<Patch<D>>, FreeSpaceError> {
+    // Each patch samples a band as well, in units of its own cells.
+    let kernel = BandPass::<D>::new(params.order, params.smoothing.unwrap_or(SMOOTHING), ratio as f64)?;
+    let band = 2.0 * (kernel.reach(params.tolerance) + TAPER as f64);
+    let cost = |cells: [usize; D]| cells.iter().map(|n| (n * ratio) as f64 + band).product();
+    let above = error.iter().enumerate().filter(|(_, e)| e.abs() > limit);
+    let blocks = Blocks::new(mesh.cells(), above.map(|(point, _)| mesh.indices(point)));
+    let boxes = blocks.covers(&cost).into_iter();
+    Ok(boxes.map(|(first, cells)| Patch { parent, first, cells, ratio }).collect())
+}
+
+/// How [`suggest_tree`] chooses patches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TreeParams {
+    /// Largest error of phi, or of its gradient, over the largest magnitude of it.
+    pub tolerance: f64,
+    /// Whether the tolerance is that of the gradient.
+    pub gradient: bool,
+    /// Parts that a cell is divided into in each direction from level to level.
+    pub ratio: usize,
+    /// Levels of patches that there may be.
+    pub levels: usize,
+    /// How the patches are going to be solved on. The tolerance does not know of what an interpolation adds; a shift adds nothing, but takes
+    /// `ratio^D` times as many transforms of each mesh for each level below it.
+    pub refine: RefineParams,
+}
+
+impl Default for TreeParams {
+    /// A potential to 1e-4 with up to eight levels of ratio 2, order 6, superposed by polynomials through 16 points: waves of six cells of a mesh are
+    /// brought to a finer one with 3e-6 of them, waves of twelve with 5e-11.
+    fn default() -> Self {
+        let superposition = super::Superposition::Lagrange(16);
+        let refine = RefineParams { order: 6, superposition, ..RefineParams::default() };
+        Self { tolerance: 1e-4, gradient: false, ratio: 2, levels: 8, refine }
     }
-    let mut patches = Vec::new();
-    while let Some(start) = marked.iter().position(|m| *m) {
-        let first = indices(start, blocks);
-        let mut size = [1; D];
-        // A box grows in one direction after the other as long as all of the next layer is marked.
-        for axis in 0..D {
-            while first[axis] + size[axis] < blocks[axis]
-                && layer(first, size, axis).all(|b| marked[place(b, blocks)])
-            {
-                size[axis] += 1;
+}
+
+/// Part of the tolerance above which an estimate is refined: it is good to some tenths.
+const MARGIN: f64 = 0.5;
+
+/// Smoothing radius over the spacing of the kernel that another one is compared with: less, and it would not be summed as
+/// accurately as it is integrated.
+const SHARPER: f64 = 1.25;
+
+/// The least ratio of the radii that are compared.
+const LEAST_RATIO: f64 = 1.1;
+
+/// Patches, and patches within them, wherever the error of a solve exceeds a tolerance: the base mesh first, then level by level, each judged
+/// by the source on its own mesh. The error is local, `(G - G_m) * source`, and estimated in all its terms as what a radius
+/// smaller by a ratio a changes, over `1 - a^-m`. `source` must vanish beyond the base mesh, whose points must resolve it:
+/// patches add what a mesh smooths, not what it samples wrongly.
+///
+/// # Errors
+/// [`FreeSpaceError::Tolerance`] where the base mesh does not resolve the source, [`FreeSpaceError::Levels`] where more levels would be needed,
+/// and the errors of kernels and plans.
+pub fn suggest_tree<const D: usize>(
+    base: &Mesh<D>,
+    source: impl Fn([f64; D]) -> f64,
+    params: TreeParams,
+) -> Result<Vec<Patch<D>>, FreeSpaceError> {
+    let TreeParams { tolerance, ratio, levels, refine, .. } = params;
+    FreeSpaceError::unless_positive("tolerance", tolerance)?;
+    let wanted: Vec<Output> = if params.gradient {
+        (0..D).map(|axis| Output::Gradient { source: 0, axis }).collect()
+    } else {
+        vec![Output::Potential { source: 0 }]
+    };
+    let values = base.sample(&source);
+    let unresolved = Spectrum::new(base, &values)?.error(Kernel::Spectral);
+    if unresolved > tolerance {
+        return Err(FreeSpaceError::Tolerance { tolerance, error: unresolved });
+    }
+    let smoothing = Some(refine.smoothing.unwrap_or(SMOOTHING));
+    let plan: Plan<D> = Plan::new(base, Kernel::Gaussian { order: refine.order, smoothing })?;
+    let size = magnitudes(&plan, &values, &wanted)?.into_iter().fold(0.0_f64, f64::max);
+    let limit = MARGIN * tolerance * size;
+    let (mut tree, mut front) = (Vec::new(), vec![(None, *base)]);
+    for level in 0..=levels {
+        let (mut next, mut worst) = (Vec::new(), 0.0_f64);
+        for (parent, mesh) in front {
+            let error = estimate(&mesh, &source, &wanted, &params)?;
+            worst = error.iter().fold(worst, |m, e| m.max(*e));
+            for patch in patches(&mesh, parent, &error, limit, ratio, &refine)? {
+                next.push((Some(tree.len()), patch.mesh(tree.len(), &mesh)?));
+                tree.push(patch);
             }
         }
-        cover(first, size).for_each(|b| marked[place(b, blocks)] = false);
-        let end: [usize; D] = std::array::from_fn(|a| ((first[a] + size[a]) * BLOCK).min(mesh.cells()[a]));
-        let first = first.map(|b| b * BLOCK);
-        patches.push(Patch { parent: None, first, cells: std::array::from_fn(|a| end[a] - first[a]), ratio });
+        if next.is_empty() {
+            return Ok(tree);
+        }
+        if level == levels {
+            return Err(FreeSpaceError::Levels { levels, tolerance, error: worst / size });
+        }
+        front = next;
     }
-    Ok(patches)
+    Ok(tree)
 }
 
-fn place<const D: usize>(block: [usize; D], blocks: [usize; D]) -> usize {
-    (0..D).rev().fold(0, |all, a| all * blocks[a] + block[a])
+/// What the error on a mesh is, point by point: of phi, or the length of that of its gradient.
+fn estimate<const D: usize>(
+    mesh: &Mesh<D>,
+    source: &impl Fn([f64; D]) -> f64,
+    wanted: &[Output],
+    params: &TreeParams,
+) -> Result<Vec<f64>, FreeSpaceError> {
+    let smoothing = params.refine.smoothing.unwrap_or(SMOOTHING);
+    let spacing = mesh.spacing().into_iter();
+    let (finest, coarsest) =
+        spacing.fold((f64::INFINITY, 0.0_f64), |(low, high), h| (low.min(h), high.max(h)));
+    let ratio = (smoothing / SHARPER).max(LEAST_RATIO);
+    let order = params.refine.order;
+    let kernel = BandPass::<D>::new(order, smoothing * coarsest / ratio, ratio)?;
+    let band = (kernel.reach(params.refine.tolerance) / finest).ceil() as usize + TAPER;
+    let sampled = mesh.grown(band)?;
+    let plan = Plan::compact(&sampled, &kernel, kernel.smooth())?;
+    let error = magnitudes(&plan, &taper(&sampled, &sampled.sample(source))?, wanted)?;
+    let rest = 1.0 - ratio.powi(-(order as i32));
+    Ok(part(&error, &sampled, band, mesh).into_iter().map(|e| e / rest).collect())
 }
 
-fn indices<const D: usize>(mut index: usize, blocks: [usize; D]) -> [usize; D] {
-    blocks.map(|n| {
-        let i = index % n;
-        index /= n;
-        i
-    })
-}
-
-/// The blocks of a box.
-fn cover<const D: usize>(first: [usize; D], size: [usize; D]) -> impl Iterator<Item = [usize; D]> {
-    (0..size.iter().product()).map(move |i| {
-        let offset = indices(i, size);
-        std::array::from_fn(|a| first[a] + offset[a])
-    })
-}
-
-/// The blocks behind a box in a direction.
-fn layer<const D: usize>(
-    mut first: [usize; D],
-    mut size: [usize; D],
-    axis: usize,
-) -> impl Iterator<Item = [usize; D]> {
-    first[axis] += size[axis];
-    size[axis] = 1;
-    cover(first, size)
+/// The root of the sum of squares of outputs.
+fn magnitudes<const D: usize>(
+    plan: &Plan<D>,
+    source: &[f64],
+    wanted: &[Output],
+) -> Result<Vec<f64>, FreeSpaceError> {
+    let mut fields = Vec::new();
+    plan.solve(&[source], wanted, &mut Workspace::default(), &mut fields)?;
+    let square = |point: usize| fields.iter().map(|field| field[point] * field[point]).sum::<f64>();
+    Ok((0..source.len()).map(|point| square(point).sqrt()).collect())
 }
 
 #[cfg(test)]
@@ -90,8 +177,9 @@ mod tests {
 
     #[test]
     fn every_point_above_the_tolerance_is_covered_once() -> Result<(), crate::error::FreeSpaceError> {
-        let mesh = Mesh::new([0.0; 2], [1.0; 2], [50, 44], Centring::Cell)?;
-        let error = mesh.sample(|[x, y]| if (x - 20.0).hypot(y - 25.0) < 14.0 { 1.0 } else { 0.0 });
+        let mesh = Mesh::new([0.0; 2], [1.0; 2], [150, 144], Centring::Cell)?;
+        let round = |[x, y]: [f64; 2], [a, b]: [f64; 2]| (x - a).hypot(y - b) < 14.0;
+        let error = mesh.sample(|p| f64::from(u8::from(round(p, [20.0, 25.0]) || round(p, [120.0, 115.0]))));
         let patches = suggest(&mesh, &error, &vec![1.0; mesh.len()], 0.5, 2)?;
         for (point, error) in error.iter().enumerate() {
             let i = mesh.indices(point);
@@ -100,7 +188,7 @@ mod tests {
             let count = patches.iter().filter(inside).count();
             assert!(count <= 1 && (count == 1 || *error < 0.5), "{i:?}");
         }
-        assert!(patches.len() > 1 && suggest(&mesh, &error, &error, 2.0, 2)?.is_empty());
+        assert!(patches.len() == 2 && suggest(&mesh, &error, &error, 2.0, 2)?.is_empty());
         Ok(())
     }
 }

@@ -5,13 +5,14 @@
 //! kernel, and adds what its parent found. The result counts inside of the patch alone, so that neighbours need not know of
 //! each other.
 
+mod boxes;
 mod indicator;
 mod interpolate;
 mod patch;
 mod shift;
 mod taper;
 
-pub use indicator::suggest;
+pub use indicator::{TreeParams, suggest, suggest_tree};
 pub use interpolate::{Superposition, m4_prime, m6_star};
 pub use patch::Patch;
 

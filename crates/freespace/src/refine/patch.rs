@@ -50,7 +50,7 @@ impl<const D: usize> Patch<D> {
         Mesh::new(
             std::array::from_fn(|a| parent.min()[a] + self.first[a] as f64 * spacing[a]),
             spacing.map(|h| h / self.ratio as f64),
-            self.cells.map(|n| n * self.ratio),
+            self.cells.map(|n| n.saturating_mul(self.ratio)),
             parent.centring(),
         )
     }

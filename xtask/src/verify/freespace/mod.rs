@@ -7,6 +7,7 @@ mod patches_in_space;
 mod problems;
 mod runs;
 mod sections;
+mod trees;
 
 use meshless_freespace::Kernel;
 
@@ -101,6 +102,9 @@ fn refined(options: &Options) -> Vec<Result<Run, String>> {
         runs.extend(sizes.iter().map(|&n| patches::uniform(SCALES_ORDER, n)));
         for &n in sizes.iter().filter(|n| **n >= 1024) {
             runs.extend(patches::LEVELS.map(|how| patches::refined(SCALES_ORDER, n, how)));
+        }
+        if options.effort > Effort::Quick {
+            runs.extend(trees::TREES.map(|tree| trees::run(SCALES_ORDER, tree)));
         }
     }
     runs

@@ -3,6 +3,7 @@
 use super::patches::{CASE, COARSE, PAYING, SCALES, UNIFORM};
 use super::patches_in_space::{self, FINE, ONE, ONE_BY_M6, TWO};
 use super::runs::Run;
+use super::trees::{TREES, levels};
 use super::{PATCH_ORDERS, SCALES_ORDER, paper};
 use crate::verify::claims::Claims;
 use crate::verify::options::{Effort, Options};
@@ -158,6 +159,9 @@ fn scales(runs: &[Run], options: &Options, claims: &mut Claims) {
             0.5,
         );
     }
+    if options.effort > Effort::Quick {
+        trees(runs, claims);
+    }
     // Patches add what the base mesh smooths, not what it samples wrongly: its points must resolve the source.
     let limit = super::SCALES_LIMIT;
     claims.at_least(
@@ -166,4 +170,20 @@ fn scales(runs: &[Run], options: &Options, claims: &mut Claims) {
         find(COARSE, limit).zip(find(UNIFORM, limit)).map(|(p, u)| p.l2 / u.l2),
         5.0,
     );
+}
+
+/// Patches by the estimate.
+fn trees(runs: &[Run], claims: &mut Claims) {
+    for (name, tolerance) in TREES {
+        let run = runs.iter().find(|r| r.case == SCALES && r.variant == name);
+        let claim = format!("{name} by the estimate: largest error of the velocity over the tolerance");
+        claims.at_most(SCALES, claim, run.map(|r| r.linf / tolerance), 1.0);
+        claims.at_most(
+            SCALES,
+            format!("{name}: points over those of one mesh as fine as the finest"),
+            run.map(|r| r.points as f64 / (r.n * r.n) as f64),
+            0.2,
+        );
+        claims.at_least(SCALES, format!("{name}: levels that were chosen"), run.map(levels), 2.0);
+    }
 }

@@ -125,14 +125,14 @@ pub(super) fn run(layout: &Layout, order: usize, n: usize) -> Result<Run, String
     })
 }
 
-struct Solved {
+pub(super) struct Solved {
     plan: RefinedPlan<2>,
     fields: Vec<Vec<Vec<f64>>>,
-    plan_seconds: f64,
-    solve_seconds: f64,
+    pub(super) plan_seconds: f64,
+    pub(super) solve_seconds: f64,
 }
 
-fn solve(
+pub(super) fn solve(
     base: &Mesh<2>,
     patches: &[Patch<2>],
     params: RefineParams,
@@ -151,13 +151,19 @@ fn solve(
 
 impl Solved {
     /// Points of all meshes that sources were sampled on.
-    fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         (0..self.plan.len()).map(|i| self.plan.source_mesh(i).len()).sum()
+    }
+
+    /// Cells in each direction of one mesh as fine as the finest.
+    pub(super) fn finest(&self) -> usize {
+        let spacing = (0..self.plan.len()).map(|i| self.plan.mesh(i).spacing()[0]).fold(2.0, f64::min);
+        (2.0 / spacing).round() as usize
     }
 
     /// Error (31), relative largest error and largest error, over the points that no patch covers, or over those of the
     /// innermost patches.
-    fn errors(&self, bumps: &[Field], inside: bool) -> [f64; 3] {
+    pub(super) fn errors(&self, bumps: &[Field], inside: bool) -> [f64; 3] {
         let (mut error, mut size, mut worst, mut largest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
         for (index, fields) in self.fields.iter().enumerate() {
             let mesh = self.plan.mesh(index);
@@ -209,7 +215,7 @@ pub(super) const PAYING: &str = "two levels, ten points";
 /// The base mesh does not.
 pub(super) const COARSE: &str = "three levels, ten points";
 
-fn two_scales() -> Vec<Field> {
+pub(super) fn two_scales() -> Vec<Field> {
     TWO_SCALES
         .iter()
         .map(|&(height, centre, radius)| Field { height, ..problems::bump_at(centre, radius) })
