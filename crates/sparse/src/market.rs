@@ -35,7 +35,14 @@ pub enum MarketError {
     Matrix(#[from] MatrixError),
 }
 
-/// Reads `%%MatrixMarket matrix coordinate real|integer general|symmetric`. Repeated entries add up.
+/// Rows that a file may have without an entry for every [`ROWS_PER_ENTRY`] of them.
+const FEW_ROWS: usize = 1 << 20;
+
+/// Rows that there may be for an entry, in larger files: memory is for what a file has, not for what its size line claims.
+const ROWS_PER_ENTRY: usize = 64;
+
+/// Reads `%%MatrixMarket matrix coordinate real|integer general|symmetric`. Repeated entries add up; symmetric files have the lower
+/// triangle only.
 ///
 /// # Errors
 /// [`MarketError`] gives the line.
@@ -53,6 +60,7 @@ pub fn read_matrix_market(reader: impl BufRead) -> Result<Csr, MarketError> {
         }
     };
     let mut size = None;
+    let mut too_many = None;
     let mut triplets = Vec::new();
     let mut found = 0;
     for entry in lines {
@@ -62,12 +70,23 @@ pub fn read_matrix_market(reader: impl BufRead) -> Result<Csr, MarketError> {
         }
         let wrong = |expected| MarketError::Line { line, expected, found: text.clone() };
         let Some((nrows, ncols, _)) = size else {
-            size = Some(size_line(&text).ok_or_else(|| wrong("expected \"rows columns entries\""))?);
+            let sizes = size_line(&text).ok_or_else(|| wrong("expected \"rows columns entries\""))?;
+            if sizes.0.max(sizes.1) > u32::MAX as usize {
+                return Err(MatrixError::TooLarge { size: sizes.0.max(sizes.1) }.into());
+            }
+            if symmetric && sizes.0 != sizes.1 {
+                return Err(wrong("expected as many rows as columns of a symmetric matrix"));
+            }
+            size = Some(sizes);
+            too_many = Some(wrong("expected fewer rows or columns, almost all of them have no entry"));
             continue;
         };
         let (i, j, value) = entry_line(&text).ok_or_else(|| wrong("expected \"row column value\""))?;
         if !(1..=nrows).contains(&i) || !(1..=ncols).contains(&j) {
             return Err(wrong("expected a row and a column within the size, counted from 1"));
+        }
+        if symmetric && j > i {
+            return Err(wrong("expected an entry on or below the diagonal of a symmetric matrix"));
         }
         if !value.is_finite() {
             return Err(wrong("expected a finite value"));
@@ -82,6 +101,10 @@ pub fn read_matrix_market(reader: impl BufRead) -> Result<Csr, MarketError> {
     let (nrows, ncols, announced) = size.ok_or_else(no_size)?;
     if found != announced {
         return Err(MarketError::Count { found, announced });
+    }
+    let large = nrows.max(ncols);
+    if let Some(error) = too_many.filter(|_| large > FEW_ROWS && large / ROWS_PER_ENTRY > found) {
+        return Err(error);
     }
     Ok(Csr::from_triplets(nrows, ncols, &triplets)?)
 }

@@ -116,6 +116,10 @@ fn market_files_are_read_with_the_line_of_every_error() {
         (format!("{head}2 2 1\n1 3 2.0\n"), 5),
         (format!("{head}2 2 1\n1 1 nan\n"), 5),
         (format!("{head}2 2 1\n1 1 2.0 3.0\n"), 5),
+        // Both triangles would count twice.
+        (format!("{head}2 2 2\n2 1 2.0\n1 2 2.0\n"), 6),
+        (format!("{head}2 3 1\n1 1 2.0\n"), 4),
+        (format!("{head}4000000000 4000000000 1\n1 1 2.0\n"), 4),
     ] {
         let Err(MarketError::Line { line, .. }) = read_matrix_market(text.as_bytes()) else {
             panic!("accepted {text:?}");
@@ -124,4 +128,6 @@ fn market_files_are_read_with_the_line_of_every_error() {
     }
     let count = read_matrix_market(format!("{head}2 2 2\n1 1 1.0\n").as_bytes()).unwrap_err();
     assert!(matches!(count, MarketError::Count { found: 1, announced: 2 }));
+    let large = read_matrix_market(format!("{head}99999999999 99999999999 0\n").as_bytes()).unwrap_err();
+    assert!(matches!(large, MarketError::Matrix(MatrixError::TooLarge { size: 99_999_999_999 })));
 }

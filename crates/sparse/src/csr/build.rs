@@ -185,8 +185,8 @@ impl Csr {
         build_rows(nrows, ncols, scratch, fill).map(|(matrix, _)| matrix)
     }
 
-    /// A matrix from triplets (row, column, value) in any order; repeated places add up in the order given.
-    /// Meant for small matrices: large ones are better built by rows.
+    /// A matrix from triplets (row, column, value) in any order; repeated places add up in the order given. Building by rows
+    /// takes less memory.
     ///
     /// # Errors
     /// A row or column out of range, or a value that is not finite.
@@ -195,14 +195,24 @@ impl Csr {
         ncols: usize,
         triplets: &[(usize, usize, f64)],
     ) -> Result<Self, MatrixError> {
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); nrows];
+        let mut ends = vec![0; nrows];
+        for &(row, _, _) in triplets {
+            *ends.get_mut(row).ok_or(MatrixError::RowOutOfRange { row, nrows })? += 1;
+        }
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += *end;
+            *end = sum - *end;
+        }
+        // Ends are starts until all entries have their places.
+        let mut sorted = vec![(0, 0.0); triplets.len()];
         for &(row, column, value) in triplets {
-            rows.get_mut(row).ok_or(MatrixError::RowOutOfRange { row, nrows })?.push((column, value));
+            sorted[ends[row]] = (column, value);
+            ends[row] += 1;
         }
         Self::from_rows(nrows, ncols, |i, row| {
-            for &(column, value) in &rows[i] {
-                row.push(column, value);
-            }
+            let start = if i == 0 { 0 } else { ends[i - 1] };
+            sorted[start..ends[i]].iter().for_each(|&(column, value)| row.push(column, value));
         })
     }
 }
