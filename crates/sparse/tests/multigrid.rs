@@ -222,11 +222,39 @@ fn a_pure_neumann_problem_is_solved_as_far_as_its_data_allow() {
     assert!(r.iter().all(|r| r.abs() < 1e-8));
     // With a constant added, nothing can solve it; what is left is that constant.
     let wrong: Vec<f64> = b.iter().map(|b| b + 1.0).collect();
-    let Err(SolveError::NoConvergence { residual, .. }) = solve(&a, &wrong, &multigrid()) else {
+    let Err(SolveError::NoConvergence { residual, reason, .. }) = solve(&a, &wrong, &multigrid()) else {
         panic!("sources without a sink")
     };
+    assert!(reason.contains("add up to nothing"), "{reason}");
     let unit = wrong.iter().map(|b| b * b).sum::<f64>().sqrt();
     assert!((residual * unit / (a.nrows() as f64).sqrt() - 1.0).abs() < 0.1, "{residual}");
+}
+
+#[test]
+fn convection_by_upwind_differences_converges_with_incomplete_factors_and_a_restriction_of_its_own() {
+    let m = 80;
+    for peclet in [1.0, 10.0, 1000.0] {
+        let a = Csr::from_rows(m * m, m * m, |i, row| {
+            let at = |k: usize| 2.0 * k as f64 / m as f64 - 1.0;
+            let wind = [(i % m, 1, at(i / m) * peclet), (i / m, m, -at(i % m) * peclet)];
+            for (k, stride, speed) in wind {
+                if k > 0 {
+                    row.push(i - stride, -1.0 - speed.max(0.0));
+                }
+                if k + 1 < m {
+                    row.push(i + stride, -1.0 + speed.min(0.0));
+                }
+                row.push(i, 2.0 + speed.abs());
+            }
+        });
+        let levels = MultigridParams {
+            smoother: SmootherKind::Ilu0,
+            restriction: Restriction::Own,
+            ..MultigridParams::default()
+        };
+        let (_, info) = solve(&a.unwrap(), &vec![1.0; m * m], &with(levels)).unwrap();
+        assert!(info.iterations <= 15, "{peclet}: {}", info.iterations);
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{dense, dense_product, distance};
+use common::{cases, dense, dense_product, distance};
 use meshless_sparse::{
     Criterion, Csr, DifferenceMatrix, MultigridParams, PreconditionerKind, Prepared, SolveError, SolverKind,
     SolverParams, solve,
@@ -81,7 +81,7 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(cases(32))]
 
     #[test]
     fn dominant_matrices_of_any_signs_are_solved((a, x) in dominant()) {
@@ -101,8 +101,7 @@ proptest! {
         let scaled = count(&a.row_scaled(&all).unwrap(), &b).unwrap();
         prop_assert!(scaled.abs_diff(reference) <= 1, "scaled: {scaled} {reference}");
         let permuted = count(&a.permuted(&order).unwrap(), &b).unwrap();
-        // Mostly by 1, and on the average by nothing, see below.
-        prop_assert!(permuted.abs_diff(reference) <= 3, "permuted: {permuted} {reference}");
+        prop_assert!(permuted.abs_diff(reference) <= 1, "permuted: {permuted} {reference}");
     }
 
     #[test]
@@ -133,9 +132,10 @@ proptest! {
 }
 
 #[test]
-fn a_shuffle_costs_nothing_on_the_average() {
-    let (mut natural, mut shuffled) = (0, 0);
-    for seed in 0..100u64 {
+fn any_two_shuffles_of_a_large_matrix_take_as_many_iterations() {
+    // More than what is always renumbered, so that the order it comes in is kept.
+    let m = 68;
+    for seed in 0..4u64 {
         // The finaliser of splitmix64.
         let bits = |k: usize| {
             let mut z = (seed * 1_000_003 + k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -143,15 +143,38 @@ fn a_shuffle_costs_nothing_on_the_average() {
             z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
             (z ^ (z >> 31)) >> 40
         };
-        let m = 14 + (seed % 8) as usize;
         let levels: Vec<f64> = (0..m * m).map(|k| bits(k) as f64 / f64::from(1 << 23) - 1.0).collect();
         let (a, b) = five_point(m, &levels);
-        let mut order: Vec<u32> = (0..(m * m) as u32).collect();
-        order.sort_by_key(|&i| bits(100_000 + i as usize));
         let count = |a: &Csr| solve(a, &b, &multigrid(1e-10)).unwrap().1.iterations;
-        natural += count(&a);
-        shuffled += count(&a.permuted(&order).unwrap());
+        let natural = count(&a);
+        let shuffled = [1, 2, 3].map(|k| {
+            let mut order: Vec<u32> = (0..(m * m) as u32).collect();
+            order.sort_by_key(|&i| bits(k * 100_000 + i as usize));
+            count(&a.permuted(&order).unwrap())
+        });
+        assert!(shuffled.iter().all(|s| s.abs_diff(shuffled[0]) <= 1), "{shuffled:?}");
+        assert!(shuffled[0].abs_diff(natural) <= 2, "{natural} {shuffled:?}");
     }
-    // Two tenths of an iteration; without a new numbering it is almost one.
-    assert!(natural.abs_diff(shuffled) <= 20, "{natural} {shuffled} in 100 fields");
+}
+
+#[test]
+fn a_graph_in_which_everything_is_near_everything_does_not_fill_in() {
+    // Six chords to anywhere from each of 4,000 nodes: a few steps lead from one to any other.
+    let n = 4000;
+    let rows = DifferenceMatrix::from_rows(n, |i, row| {
+        for k in 1..=6 {
+            let step = k * k * 97 + 13 * k;
+            row.push((i * (2 * k + 1) + step) % n, -1.0);
+        }
+        row.add_to_row_sum(1e-3);
+    });
+    let a = rows.unwrap().to_csr();
+    let x: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+    let mut b = vec![0.0; n];
+    a.mul_vec(&x, &mut b);
+    let prepared = Prepared::new(&a, &multigrid(1e-10)).unwrap();
+    let complexity = prepared.hierarchy().unwrap().operator_complexity();
+    assert!(complexity < 2.5, "{complexity}");
+    let (u, info) = prepared.solve(&b).unwrap();
+    assert!(distance(&u, &x) < 1e-6 && info.iterations <= 40, "{:e} {}", distance(&u, &x), info.iterations);
 }

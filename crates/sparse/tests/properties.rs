@@ -70,7 +70,7 @@ fn every_solver() -> Vec<SolverParams> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(common::cases(64))]
 
     #[test]
     fn products_and_transposes_agree_with_dense_ones((n, m, entries, x) in triplets()) {

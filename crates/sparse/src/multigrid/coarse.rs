@@ -71,7 +71,7 @@ impl Coarse {
 }
 
 /// Connected parts of the matrix without any row sum.
-fn floating_parts(a: &DifferenceMatrix) -> Vec<Vec<u32>> {
+pub(crate) fn floating_parts(a: &DifferenceMatrix) -> Vec<Vec<u32>> {
     let n = a.n();
     let reverse = a.off_diagonal().transpose();
     let mut seen = vec![false; n];

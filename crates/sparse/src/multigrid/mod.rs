@@ -28,6 +28,7 @@ use crate::error::MatrixError;
 use crate::precond::Preconditioner;
 use crate::solver::SolveError;
 use coarse::Coarse;
+pub(crate) use coarse::floating_parts;
 use frame::Frame;
 pub(crate) use frame::Scaling;
 pub use params::{
@@ -103,14 +104,8 @@ impl Multigrid {
         multigrid.start(&a);
         let mut kept = multigrid.frame.kept(&a, params.keep);
         while a.n() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
-            let finest = multigrid.levels.is_empty();
-            let units = multigrid.frame.units().filter(|_| finest);
-            let weights = multigrid.frame.weights(weights).filter(|_| finest);
-            let Some((p, r)) = transfers(&a, units.as_deref(), weights.as_deref(), &mut kept, params)? else {
-                break;
-            };
-            drop((units, weights));
-            a = multigrid.add_level(a, p, r)?;
+            let Some((p, r, coarse)) = multigrid.next_level(&a, weights, &mut kept)? else { break };
+            a = multigrid.add_level(a, p, r, coarse)?;
         }
         multigrid.coarse = Coarse::new(&a, params.coarsest)?;
         Ok(multigrid)
@@ -132,7 +127,8 @@ impl Multigrid {
         let old = std::mem::take(&mut self.levels);
         self.start(&a);
         for level in old {
-            a = self.add_level(a, level.p, level.r)?;
+            let coarse = self.coarse_matrix(&a, &level.p, &level.r)?;
+            a = self.add_level(a, level.p, level.r, coarse)?;
         }
         self.coarse = Coarse::new(&a, self.params.coarsest)?;
         Ok(())
@@ -142,18 +138,60 @@ impl Multigrid {
         self.info = HierarchyInfo { levels: vec![(a.n(), a.nnz() + a.n())], bytes: self.frame.bytes() };
     }
 
+    /// Prolongation, restriction and matrix of the next level; `None` where there is none that is worth having. Where smoothed
+    /// aggregates give it more entries than the level has, as in graphs in which everything is near everything, they are not smoothed.
+    fn next_level(
+        &self,
+        a: &Arc<DifferenceMatrix>,
+        weights: Option<&[f64]>,
+        kept: &mut Vec<bool>,
+    ) -> Result<Option<(Csr, Csr, DifferenceMatrix)>, SolveError> {
+        let finest = self.levels.is_empty();
+        let make = |kept: &mut Vec<bool>, step: Option<Step>| {
+            let units = self.frame.units().filter(|_| finest);
+            let weights = self.frame.weights(weights).filter(|_| finest);
+            let transfers = transfers(a, units.as_deref(), weights.as_deref(), kept, &self.params, step)?;
+            drop((units, weights));
+            let Some((p, r)) = transfers else { return Ok(None) };
+            let coarse = self.coarse_matrix(a, &p, &r)?;
+            Ok(Some((p, r, coarse)))
+        };
+        let step = match self.params.restriction {
+            Restriction::Own => Step::SAFE,
+            Restriction::Transpose if finest => Step::LONG,
+            Restriction::Transpose => Step::COARSE,
+        };
+        let before = kept.clone();
+        match make(kept, Some(step))? {
+            Some((_, _, coarse))
+                if coarse.nnz() > a.nnz() && self.params.coarsening == Coarsening::SmoothedAggregation =>
+            {
+                drop(coarse);
+                *kept = before;
+                make(kept, None)
+            }
+            next => Ok(next),
+        }
+    }
+
+    /// The matrix of the level after the last.
+    fn coarse_matrix(&self, a: &DifferenceMatrix, p: &Csr, r: &Csr) -> Result<DifferenceMatrix, SolveError> {
+        let coarse = if self.levels.is_empty() {
+            galerkin::product(a, &self.frame.row_sums(a), self.frame.units().as_deref(), p, r)
+        } else {
+            galerkin::product(a, a.row_sums(), None, p, r)
+        };
+        coarse.require_finite()?;
+        Ok(coarse)
+    }
+
     fn add_level(
         &mut self,
         a: Arc<DifferenceMatrix>,
         p: Csr,
         r: Csr,
+        coarse: DifferenceMatrix,
     ) -> Result<Arc<DifferenceMatrix>, SolveError> {
-        let coarse = if self.levels.is_empty() {
-            galerkin::product(&a, &self.frame.row_sums(&a), self.frame.units().as_deref(), &p, &r)
-        } else {
-            galerkin::product(&a, a.row_sums(), None, &p, &r)
-        };
-        coarse.require_finite()?;
         let smoother = match self.levels.len() {
             0 => Smoother::new(self.params.smoother, &a)?,
             _ => Smoother::of_coarse(self.params.smoother, &a)?,
@@ -172,13 +210,15 @@ impl Multigrid {
 }
 
 /// Prolongation and restriction to the next level; `None` where there is none that is worth having. Of a level that there is
-/// `kept` says which unknowns stay, before and after. Coarse unknowns of 1 are `units`, where these are not ones.
+/// `kept` says which unknowns stay, before and after. Coarse unknowns of 1 are `units`, where these are not ones. Aggregates are
+/// smoothed by `step`, if there is one.
 fn transfers(
     a: &DifferenceMatrix,
     units: Option<&[f64]>,
     weights: Option<&[f64]>,
     kept: &mut Vec<bool>,
     params: &MultigridParams,
+    step: Option<Step>,
 ) -> Result<Option<(Csr, Csr)>, SolveError> {
     let symmetric = strength::symmetric(a, units, params.threshold);
     let unit = |j: usize| units.map_or(1.0, |c| c[j]);
@@ -197,10 +237,14 @@ fn transfers(
             }
             let own = params.restriction == Restriction::Own;
             let minimizing = params.prolongation == ProlongationKind::EnergyMinimizing;
+            let Some(step) = step else {
+                let p = prolongation::tentative(&aggregates);
+                let r = restriction(&p, weights);
+                return Ok(Some((in_units(p, units), r)));
+            };
             if own || minimizing {
                 let weight = |i: usize| weights.map_or(1.0, |w| w[i]);
                 let balances = a.scaled_csr(weight, unit);
-                let step = if own { Step::SAFE } else { Step::LONG };
                 let smoothed = |balances: &Csr| match minimizing {
                     true => energy::minimized(balances, &graph, &aggregates),
                     false => {
@@ -215,7 +259,7 @@ fn transfers(
                 }
                 p
             } else {
-                prolongation::smoothed(a, units, &graph, &aggregates, Step::LONG)
+                prolongation::smoothed(a, units, &graph, &aggregates, step)
             }
         }
         Coarsening::PairwiseAggregation => {

@@ -13,6 +13,9 @@ const DAMPING: f64 = 0.8;
 /// Weights below this go to the aggregate that the node is in: coarse matrices have fewer entries.
 const LEAST_WEIGHT: f64 = 0.06;
 
+/// The same on coarse levels, whose rows have more entries and matter less.
+const LEAST_WEIGHT_COARSE: f64 = 0.08;
+
 /// The Jacobi step that smooths the prolongation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {
@@ -24,6 +27,8 @@ pub(crate) struct Step {
 impl Step {
     /// For rows whose entries outside of the diagonal are mostly of one sign.
     pub(crate) const LONG: Self = Self { damping: DAMPING, least_weight: LEAST_WEIGHT };
+    /// The same for coarse levels.
+    pub(crate) const COARSE: Self = Self { damping: DAMPING, least_weight: LEAST_WEIGHT_COARSE };
     /// For rows with large entries of either sign, those that need a restriction of their own: their eigenvalues are bounded by
     /// Gershgorin's bound alone.
     pub(crate) const SAFE: Self = Self { damping: 2.0 / 3.0, least_weight: 0.0 };

@@ -31,8 +31,14 @@ fn levels(a: &DifferenceMatrix) -> (strength::Graph, Csr, Csr, Vec<f64>) {
     (graph, p.clone(), restriction(&p, None), galerkin::row_sums(a, None, &[]))
 }
 
+/// So many cases of a property, or `PROPTEST_CASES`, which `ProptestConfig::with_cases` does not look at.
+fn cases(count: u32) -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
+    ProptestConfig::with_cases(asked.unwrap_or(count))
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(cases(40))]
 
     #[test]
     fn constants_are_reproduced_and_the_coarse_matrix_is_the_galerkin_product(
@@ -189,7 +195,9 @@ fn at_a_high_contrast_the_constant_of_every_region_is_reproduced() {
 
 #[test]
 fn a_numbering_is_found_where_there_was_none() {
-    let (a, _) = disc(30, 10.0);
+    let (small, _) = disc(30, 10.0);
+    assert!(numbering::found(small.off_diagonal()).is_some(), "small ones are always renumbered");
+    let (a, _) = disc(70, 10.0);
     assert!(numbering::found(a.off_diagonal()).is_none(), "rows of a grid are an order");
     let (n, a) = (a.n(), a.to_csr());
     let shuffle: Vec<u32> = (0..n).map(|k| (k * 367 % n) as u32).collect();
@@ -200,7 +208,7 @@ fn a_numbering_is_found_where_there_was_none() {
         let far = |i: usize| a.row(i).0.iter().map(move |&j| (j as usize).abs_diff(i)).max();
         (0..n).filter_map(far).max()
     };
-    assert!(widest(&again) <= Some(45), "{:?}", widest(&again));
+    assert!(widest(&again) <= Some(105), "{:?}", widest(&again));
     // Everybody knows somebody far away.
     let random = Csr::from_rows(n, n, |i, row| {
         row.push(i, 10.0);

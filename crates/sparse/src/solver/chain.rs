@@ -1,5 +1,6 @@
 //! Multigrid, and what steps in for it.
 
+use super::diagnosis::diagnosed;
 use super::direct::Factors;
 use super::krylov::{Method, Residuals, iterate};
 use super::scaling::Scaled;
@@ -109,9 +110,12 @@ impl Chain {
             Err(error @ (SolveError::NoConvergence { .. } | SolveError::BreakDown { .. }))
                 if self.n() <= params.direct_max =>
             {
-                let Ok(factors) = Factors::new(&self.scaled().to_csr()) else { return Err(error) };
+                let Ok(factors) = Factors::new(&self.scaled().to_csr()) else {
+                    return Err(diagnosed(error, &self.rows));
+                };
                 by_factors(self.direct.get_or_init(|| factors), &b)
             }
+            Err(error) => Err(diagnosed(error, &self.rows)),
             solved => solved,
         }
     }
@@ -154,6 +158,7 @@ fn go_on(
     first: &str,
     (reached, products, mut x): (f64, usize, Vec<f64>),
 ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
+    let before = x.clone();
     let mut residual = vec![0.0; b.len()];
     a.residual(&x, b, &mut residual);
     let rest = SolverParams {
@@ -171,6 +176,28 @@ fn go_on(
             Ok((x, info))
         }
         // The remainder may be out of reach where the whole is not.
-        Err(_) => iterate(SUBSTITUTE, &a, lu, b, params),
+        Err(_) => iterate(SUBSTITUTE, &a, lu, b, params)
+            .map_err(|error| combined(error, params.tolerance, first, (reached, products, before))),
     }
+}
+
+/// What two methods have reached that both failed: the better of their solutions, the products of both.
+fn combined(
+    error: SolveError,
+    tolerance: f64,
+    first: &str,
+    (reached, products, before): (f64, usize, Vec<f64>),
+) -> SolveError {
+    let (second, reason, residual, further, best) = match error {
+        SolveError::NoConvergence { solver, reason, residual, iterations, best, .. } => {
+            (solver, reason, residual, iterations, best)
+        }
+        SolveError::BreakDown { solver, residual, iterations, best, .. } => {
+            (solver, "the recurrence breaks down", residual, iterations, best)
+        }
+        other => return other,
+    };
+    let (residual, best) = if reached < residual { (reached, before) } else { (residual, best) };
+    let solver = format!("{first}, then {second}");
+    SolveError::NoConvergence { solver, reason, residual, tolerance, iterations: products + further, best }
 }

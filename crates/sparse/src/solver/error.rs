@@ -3,6 +3,18 @@
 use crate::error::MatrixError;
 use thiserror::Error;
 
+/// Reason of [`SolveError::NoConvergence`] where the constant is in the null space of a part of the matrix.
+pub(crate) const FLOATING: &str = "the rows of all unknowns, or of a part that is tied to no others, add up to nothing, so that \
+                                   there is no solution unless the sources there balance";
+
+fn advice(reason: &str) -> &'static str {
+    if reason == FLOATING {
+        "balance them, or prescribe a value"
+    } else {
+        "try a stronger preconditioner or the direct method"
+    }
+}
+
 /// Why a system could not be solved, with what was reached.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -23,7 +35,8 @@ pub enum SolveError {
     /// The iteration reached its limit, or stopped getting anywhere.
     #[error(
         "{solver} reached a residual of {residual:e} after {iterations} products, not the {tolerance:e} asked for \
-         ({reason}); try a stronger preconditioner or the direct method"
+         ({reason}); {}",
+        advice(reason)
     )]
     NoConvergence {
         /// Method and preconditioner.

@@ -3,6 +3,7 @@
 mod bicgstab;
 mod cg;
 mod chain;
+mod diagnosis;
 mod direct;
 mod error;
 mod gmres;

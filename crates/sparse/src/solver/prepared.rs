@@ -1,6 +1,7 @@
 //! One matrix, prepared for any number of right-hand sides.
 
 use super::chain::Chain;
+use super::diagnosis::diagnosed;
 use super::direct::Factors;
 use super::krylov::{Method, iterate};
 use super::scaling::Scaled;
@@ -21,6 +22,22 @@ pub fn solve(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> Result<(Vec<f6
 }
 
 /// A scaled matrix with its factors or its preconditioner.
+///
+/// ```
+/// use meshless_sparse::{Prepared, SolverKind, SolverParams, read_matrix_market};
+///
+/// let file = "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 2\n2 1 -1\n2 2 2\n3 2 -1\n3 3 2\n";
+/// let a = read_matrix_market(file.as_bytes())?; // a file: `BufReader::new(File::open(path)?)`
+/// let params = SolverParams { kind: SolverKind::Multigrid, tolerance: 1e-10, ..SolverParams::default() };
+/// let mut prepared = Prepared::new(&a, &params)?;
+/// let solutions = prepared.solve_all(&[vec![1.0, 0.0, 1.0], vec![0.0, 2.0, 0.0]])?;
+/// assert!((solutions[0].0[1] - 1.0).abs() < 1e-9 && solutions[1].1.residual <= 1e-10);
+///
+/// // Other values in the same pattern, as in time steps: the levels stay.
+/// prepared.refresh(&a.row_scaled(&[2.0, 2.0, 2.0])?)?;
+/// assert!((prepared.solve(&[1.0, 0.0, 1.0])?.0[1] - 0.5).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Prepared {
     engine: Engine,
@@ -123,7 +140,13 @@ impl Prepared {
                 (scaled, factors.solve_refined(&*scaled.matrix, &scaled.rhs(rhs)))
             }
             Engine::Krylov(scaled, method, m) => {
-                (scaled, iterate(*method, &*scaled.matrix, m.as_ref(), &scaled.rhs(rhs), &self.params))
+                let a = &*scaled.matrix;
+                let solved = iterate(*method, a, m.as_ref(), &scaled.rhs(rhs), &self.params);
+                let why = |error| match DifferenceMatrix::from_csr(a) {
+                    Ok(rows) => diagnosed(error, &rows),
+                    Err(_) => error,
+                };
+                (scaled, solved.map_err(why))
             }
         };
         match solved {

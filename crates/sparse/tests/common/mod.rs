@@ -2,6 +2,13 @@
 #![allow(dead_code)] // each test program uses its own part
 
 use meshless_sparse::{Csr, DifferenceMatrix, Reduced};
+use proptest::prelude::ProptestConfig;
+
+/// So many cases of a property, or `PROPTEST_CASES`, which `ProptestConfig::with_cases` does not look at.
+pub(crate) fn cases(count: u32) -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
+    ProptestConfig::with_cases(asked.unwrap_or(count))
+}
 
 pub(crate) fn dense(matrix: &Csr) -> Vec<Vec<f64>> {
     (0..matrix.nrows()).map(|i| (0..matrix.ncols()).map(|j| matrix.get(i, j)).collect()).collect()
