@@ -1,5 +1,7 @@
 //! Integrals and differences of Bessel functions.
 
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
 use super::{ASYMPTOTIC, EULER, MILLER_MARGIN, SMALL};
 
 /// `1 - J0(x)` without cancellation, x >= 0.
@@ -55,16 +57,37 @@ fn neumann(x: f64) -> f64 {
     2.0 / x * sum / norm
 }
 
-/// `int_x^inf J0(u)/u du` by its asymptotic series (Abramowitz and Stegun 11.1.22 to 11.1.24).
-fn tail(x: f64) -> f64 {
-    let square = 4.0 / (x * x);
-    let (mut g0, mut g1) = (0.0, 0.0);
-    let (mut term, mut k) = (1.0_f64, 0.0);
-    while term.abs() > f64::EPSILON / 8.0 && k < x / 2.0 {
-        g0 += term;
-        g1 += term * (k + 1.0);
-        k += 1.0;
-        term *= -k * k * square;
+/// Terms of the asymptotic series of [`tail`]: at 40 the last one is below 1e-16 of the first.
+const TERMS: usize = 24;
+
+/// `d_k` of [`tail`], from the coefficients `a_k = (-1)^k (2k-1)!!^2 / (k! 8^k)` of Hankel's expansion.
+const COEFFICIENTS: [f64; TERMS] = {
+    let mut coefficients = [1.0; TERMS];
+    let (mut a, mut k) = (1.0, 1);
+    while k < TERMS {
+        let odd = (2 * k - 1) as f64;
+        a *= -odd * odd / (8 * k) as f64;
+        coefficients[k] = a - (k as f64 + 0.5) * coefficients[k - 1];
+        k += 1;
     }
-    2.0 * g1 * libm::j0(x) / (x * x) - g0 * libm::j1(x) / x
+    coefficients
+};
+
+/// `int_x^inf J0(u)/u du = sqrt(2/pi) x^(-3/2) Re sum_k i^(k+1) d_k x^-k exp(i (x - pi/4))`: Hankel's expansion of J0 (Abramowitz and Stegun
+/// 9.2.5) divided by u and integrated term by term, so that `d_k = a_k - (k + 1/2) d_(k-1)`.
+fn tail(x: f64) -> f64 {
+    let inverse = 1.0 / x;
+    let (mut even, mut odd, mut power) = (0.0, 0.0, 1.0);
+    for [first, second] in COEFFICIENTS.as_chunks::<2>().0 {
+        even += first * power;
+        odd += second * power * inverse;
+        power *= -inverse * inverse;
+        if power.abs() * second.abs() < f64::EPSILON / 64.0 {
+            break;
+        }
+    }
+    // Sine and cosine of x - pi/4, times the root of 2.
+    let (sin, cos) = x.sin_cos();
+    let root = FRAC_1_SQRT_2 * (2.0 / PI).sqrt() * inverse * inverse.sqrt();
+    -root * (even * (sin - cos) + odd * (sin + cos))
 }
