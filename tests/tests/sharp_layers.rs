@@ -239,3 +239,12 @@ fn bars_of_almost_two_spacings_are_no_reason_to_stop() {
         }
     }
 }
+
+/// No third node may lie between two neighbours of a region: in the gap of half a spacing one always does, and a node there would be
+/// left with a polynomial of its own.
+#[test]
+fn nodes_in_a_gap_belong_to_the_region_round_it() {
+    let text = meshless_tests::sharp::pair(1e2, 0.025, 3);
+    let errors = solve(&text, 6).expect("a solution").report.errors.expect("exact");
+    assert!(errors.gradient_linf < 1e-8, "{:e}", errors.gradient_linf);
+}

@@ -2,7 +2,7 @@
 
 use meshless_neighbors::CellList;
 
-use super::unknowns::ConnectedParts;
+use super::connected::ConnectedParts;
 use crate::parallel;
 use crate::{Field, InterfaceJump, MethodError, Problem};
 

@@ -7,6 +7,7 @@
 
 mod adapted;
 mod basis;
+mod connected;
 mod dense;
 mod fit;
 mod harmonic;
@@ -29,11 +30,12 @@ use meshless_sparse::DifferenceMatrix;
 use crate::method::{Counts, Discretization, Method, RowKind, SplitRows};
 use crate::{GradientRow, MethodError, Problem, Sample, SystemSolution};
 use crate::{parallel, thin_layers};
+use connected::ConnectedParts;
 use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
 pub use params::{Form, MAX_ORDER, SharpParams};
 use sample::Values;
-use unknowns::{ConnectedParts, Unknowns};
+use unknowns::Unknowns;
 
 /// The sharp method.
 #[derive(Debug, Clone, Copy, Default)]
@@ -71,7 +73,7 @@ impl Sharp {
         self.check(problem)?;
         let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
         let nodes = CellList::new(problem.cloud.points(), 3.0 * widest)?;
-        let parts = ConnectedParts::find(problem)?;
+        let parts = ConnectedParts::find(problem, &nodes)?;
         let interfaces = InterfacePoints::sample(problem, &parts, &nodes)?;
         // In time jumps change, and rates have none of the offsets.
         let unknowns = Unknowns::find(problem, parts, &interfaces, !self.params.unsteady);

@@ -1,27 +1,11 @@
 //! The change of unknowns `u = offset + sum_K sigma_K C_K + s w`, found from the graph of the regions.
 
-use meshless_geometry::RegionGraph;
 use meshless_sparse::{DifferenceMatrix, Split};
 
+use super::connected::ConnectedParts;
 use super::interface::InterfacePoints;
-use crate::system::{FloatingParts, region_graph};
+use crate::system::FloatingParts;
 use crate::{MethodError, Problem};
-
-/// The connected parts of the regions.
-#[derive(Debug)]
-pub(super) struct ConnectedParts {
-    graph: RegionGraph,
-    /// Part of every node.
-    pub(super) of_node: Vec<u32>,
-}
-
-impl ConnectedParts {
-    pub(super) fn find<const D: usize>(problem: &Problem<'_, D>) -> Result<Self, MethodError> {
-        let graph = region_graph(problem)?;
-        let of_node = (0..problem.cloud.len() as u32).map(|i| graph.component_of(i)).collect();
-        Ok(Self { graph, of_node })
-    }
-}
 
 /// Scale, constants and offset of every connected part of a region.
 #[derive(Debug)]
