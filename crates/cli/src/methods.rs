@@ -5,9 +5,9 @@ use meshless::METHODS;
 use crate::Failure;
 
 pub(crate) fn run() -> Result<(), Failure> {
-    say!("{:<24} {:<6} {:<10} limits", "method", "order", "dimensions");
+    say!("{:<28} {:<11} {:<10} limits", "method", "order", "dimensions");
     for method in METHODS {
-        say!("{:<24} {:<6} {:<10} {}", method.name, method.order, method.dimensions, method.limits);
+        say!("{:<28} {:<11} {:<10} {}", method.name, method.order, method.dimensions, method.limits);
     }
     Ok(())
 }

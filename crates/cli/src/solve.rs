@@ -14,6 +14,9 @@ use crate::summary;
 /// Least time between two writes of a checkpoint.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
 
+/// Threads at most: more than this are a slip of the keyboard, and take minutes to start.
+const MAX_THREADS: usize = 1024;
+
 pub(crate) fn run(args: &SolveArgs) -> Result<(), Failure> {
     let scene = args.instead.read(&args.scene)?;
     let plan = Plan::new(&scene)?;
@@ -58,6 +61,9 @@ pub(crate) fn on_threads<T: Send>(
     match threads {
         None => Ok(work()),
         Some(0) => Err(Failure::input("error: --threads must be at least 1")),
+        Some(n) if n > MAX_THREADS => {
+            Err(Failure::input(format!("error: --threads must be at most {MAX_THREADS}, not {n}")))
+        }
         Some(n) => meshless::on_threads(n, work).map_err(|e| Failure::failed(format!("error: {e}"))),
     }
 }

@@ -243,6 +243,15 @@ fn a_wrong_command_line_ends_with_status_2() {
 }
 
 #[test]
+fn more_threads_than_a_machine_has_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), SCENE);
+    let output = meshless(&["solve", scene.to_str().unwrap(), "--threads", "1000000"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("at most 1024"), "{}", stderr(&output));
+}
+
+#[test]
 fn a_plan_of_too_many_nodes_is_refused_with_the_spacing_that_would_do() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene_in(folder.path(), SCENE);

@@ -1,7 +1,8 @@
 //! Layers and gaps that the nodes do not resolve, or do not see.
 //!
-//! A layer is *seen* where no two neighbouring nodes of one region lie on both sides of it, and *resolved* where it is
-//! [`RESOLVED`] spacings thick. No method is right about a layer that is not seen; the fits of the sharp method want it resolved.
+//! A layer is *seen* where no two neighbouring nodes lie on both sides of it, and *resolved* where it is [`RESOLVED`] spacings
+//! thick. No method is right about a layer that is not seen, but the fits of the sharp method, which reach farther than to the next
+//! node: they need a node of the layer between nodes of one region only, and want it resolved.
 
 use meshless_geometry::ThinLayer;
 use meshless_neighbors::CellList;
@@ -33,15 +34,24 @@ const NONE_INSIDE: f64 = 1.0;
 /// [`MethodError::ThinLayer`] where two neighbouring nodes of one region lie on both sides of a layer: its region would be
 /// taken for connected across, and a fit to both sides by one polynomial would not see the layer.
 pub(crate) fn check<const D: usize>(problem: &Problem<'_, D>) -> Result<(), MethodError> {
-    unseen(problem)?.map_or(Ok(()), |layer| Err(unresolved(&layer)))
+    between(problem, &|i, j| problem.labels[i] == problem.labels[j])?
+        .map_or(Ok(()), |layer| Err(unresolved(&layer)))
 }
 
-/// A layer that two neighbouring nodes of one region lie on both sides of, where there is one: whatever the method, its nodes
-/// do not see that the layer parts them, and a coarser cloud does not tell.
+/// A layer that two neighbouring nodes lie on both sides of, where there is one: methods that look no farther than to the next
+/// node do not see that the layer parts them, and a coarser cloud does not tell.
 ///
 /// # Errors
 /// Those of [`CellList::new`].
 pub fn unseen<const D: usize>(problem: &Problem<'_, D>) -> Result<Option<ThinLayer<D>>, MethodError> {
+    between(problem, &|_, _| true)
+}
+
+/// A layer between two neighbouring nodes, of those that count.
+fn between<const D: usize>(
+    problem: &Problem<'_, D>,
+    counts: &dyn Fn(usize, usize) -> bool,
+) -> Result<Option<ThinLayer<D>>, MethodError> {
     let layers = layers(problem);
     if layers.is_empty() {
         return Ok(None);
@@ -52,12 +62,13 @@ pub fn unseen<const D: usize>(problem: &Problem<'_, D>) -> Result<Option<ThinLay
     let mut near = Vec::new();
     for (i, j) in adjacent_pairs(problem.cloud.points(), problem.supports.lists) {
         let (i, j) = (i as usize, j as usize);
-        if problem.labels[i] != problem.labels[j] {
+        if !counts(i, j) {
             continue;
         }
         near.clear();
         index.within(&problem.cloud.points()[i], NEAR * problem.cloud.spacing()[i], &mut near);
-        let near = near.iter().map(|&k| &layers[k as usize]).filter(|l| l.region != problem.labels[i]);
+        let parts = |l: &&ThinLayer<D>| [i, j].iter().all(|&k| problem.labels[k] != l.region);
+        let near = near.iter().map(|&k| &layers[k as usize]).filter(parts);
         if let Some(layer) = near.min_by(|a, b| a.thickness.total_cmp(&b.thickness))
             && sees_through(problem, (i, j), layer)
         {
@@ -67,7 +78,7 @@ pub fn unseen<const D: usize>(problem: &Problem<'_, D>) -> Result<Option<ThinLay
     Ok(None)
 }
 
-/// Whether the way between two nodes of one region leads through a layer, in by one of its sides and out by the opposite one.
+/// Whether the way between two nodes leads through a layer, in by one of its sides and out by the opposite one.
 fn sees_through<const D: usize>(
     problem: &Problem<'_, D>,
     (i, j): (usize, usize),
@@ -88,12 +99,16 @@ fn sees_through<const D: usize>(
         }
         at(beyond)
     };
-    let normal = |point: &[f64; D]| {
+    let normal = |(outside, point): (u16, &[f64; D])| {
         let reach = layer.thickness.min(0.1 * distance);
-        problem.regions.project(problem.labels[i], layer.region, point, reach).ok().map(|p| p.normal)
+        problem.regions.project(outside, layer.region, point, reach).ok().map(|p| p.normal)
     };
     let ends = [end(along(first), along(first - 1)), end(along(last - 1), along(last))];
-    let [Some(enters), Some(leaves)] = ends.map(|point| normal(&point)) else { return false };
+    let [Some(enters), Some(leaves)] =
+        [(i, &ends[0]), (j, &ends[1])].map(|(k, end)| normal((problem.labels[k], end)))
+    else {
+        return false;
+    };
     (0..D).map(|k| enters[k] * leaves[k]).sum::<f64>() < OPPOSITE
 }
 

@@ -70,8 +70,10 @@ impl<const D: usize> Cloud<D> {
         Ok(Self::assemble(points, boundary, spacing))
     }
 
-    fn assemble(points: Vec<[f64; D]>, mut boundary: Vec<BoundaryNode<D>>, spacing: Vec<f64>) -> Self {
+    fn assemble(mut points: Vec<[f64; D]>, mut boundary: Vec<BoundaryNode<D>>, spacing: Vec<f64>) -> Self {
         boundary.sort_by_key(|b| b.node);
+        // A zero has no sign: data such as atan2 would take the other branch.
+        points.iter_mut().flatten().for_each(|c| *c += 0.0);
         let mut boundary_index = vec![INTERIOR; points.len()];
         for (k, b) in boundary.iter().enumerate() {
             boundary_index[b.node as usize] = k as u32;

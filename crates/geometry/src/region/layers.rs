@@ -9,6 +9,9 @@ use crate::vector::{axpy, dot, norm, normalized};
 /// How far beside an interface the regions on its two sides are read, in spacings.
 const BESIDE: f64 = 1e-5;
 
+/// Thickness in spacings below which a strip along the boundary of the domain is none: a surface that runs along it.
+const ALONG: f64 = 3.0 * BESIDE;
+
 /// Steps in which the end of a layer is looked for, in spacings, and how often the last one is halved.
 const STEP: f64 = 0.05;
 const HALVINGS: usize = 16;
@@ -110,7 +113,8 @@ impl<const D: usize> RegionMap<D> {
             inside.then(|| self.label(&at(t), 0.0))
         };
         let region = label(BESIDE)?;
-        if label(-BESIDE).is_none_or(|other| other == region) {
+        // Along the boundary of the domain there is nothing on the far side but what rounding allows for.
+        if label(-BESIDE).is_none_or(|other| other == region) || label(ALONG).is_none() {
             return None;
         }
         let steps = (across.least / STEP).ceil() as usize;
@@ -306,6 +310,10 @@ mod tests {
         assert!(layers(vec![slab(0.97)], 0.05).iter().all(|l| l.region == 1 && l.thickness < 0.0301));
         assert!(layers(vec![slab(-0.97)], 0.05).iter().all(|l| l.region == 0 && l.thickness < 0.0301));
         assert!([0.97, -0.97].iter().all(|&x| layers(vec![slab(x)], 0.05).len() > 40));
+        // A shape that ends at the boundary runs along it, as does one round a hole.
+        let polygon =
+            Shape::polygon(vec![[-1.0, -1.0], [0.3, -1.0], [0.3, 1.0], [-1.0, 1.0]]).expect("a polygon");
+        assert_eq!(layers(vec![polygon], 0.05), Vec::new());
         // Far enough away; touching; meeting it at an angle.
         assert_eq!(layers(vec![slab(0.85)], 0.05), Vec::new());
         assert_eq!(layers(vec![Shape::ball([0.7, 0.0], 0.3).expect("a disc")], 0.05), Vec::new());

@@ -1,10 +1,11 @@
 use rayon::prelude::*;
 
 use crate::cloud::Cloud;
+use crate::domain::Domain;
 use crate::error::GeometryError;
 use crate::projection::{Projection, ProjectionError};
 use crate::shape::Shape;
-use crate::vector::{axpy, norm, scale};
+use crate::vector::{axpy, dot, norm, scale};
 
 /// Nodes nearer to a region's surface than this count as inside: a length relative to the node's spacing. Far above
 /// the rounding of coordinates and levels, far below any distance that matters to a method.
@@ -12,6 +13,26 @@ pub const TIE: f64 = 1e-9;
 
 /// How far from an interface the labels on its two sides are read, relative to the reach of the search.
 const SIDE_STEP: f64 = 1e-4;
+
+/// How far outside of a domain the foot on an interface may be, over the domain's diameter: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// How far outside of a domain, in units of the step beside a foot, the side is that lies beyond a boundary which the interface
+/// runs along: one that meets the boundary at an angle is less far out.
+const OUTSIDE: f64 = 0.9;
+
+/// Least cosine of the angle between the normals of two feet on an interface without a bend in between.
+const NO_BEND: f64 = 0.7;
+
+/// Where the foot on an interface is, the best first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Where {
+    Inside,
+    /// Outside of the domain.
+    Beyond,
+    /// On its boundary, with one side outside; or no interface.
+    Along,
+}
 
 /// The shape of a region; `None` for the background.
 pub type RegionShape<const D: usize> = Option<Shape<D>>;
@@ -94,28 +115,74 @@ impl<const D: usize> RegionMap<D> {
         x: &[f64; D],
         reach: f64,
     ) -> Result<Projection<D>, ProjectionError> {
+        self.foot([a, b], x, reach, &|_, _| Where::Inside)
+    }
+
+    /// [`RegionMap::project`] onto what there is of the interface in a domain. The surface of a shape that ends at the domain's
+    /// boundary runs along it, or beyond it: there is no interface. A foot beyond the boundary is returned only where the interface
+    /// leads there without a bend.
+    ///
+    /// # Errors
+    /// As [`RegionMap::project`].
+    pub fn project_within(
+        &self,
+        domain: &Domain<D>,
+        a: u16,
+        b: u16,
+        x: &[f64; D],
+        reach: f64,
+    ) -> Result<Projection<D>, ProjectionError> {
+        let rounding = ROUNDING * domain.bounds().diameter();
+        self.foot([a, b], x, reach, &|p, step| {
+            if !domain.contains(&p.point, rounding) {
+                return Where::Beyond;
+            }
+            let side = |t: f64| domain.contains(&axpy(&p.point, t, &p.normal), OUTSIDE * step);
+            if side(-step) && side(step) { Where::Inside } else { Where::Along }
+        })
+    }
+
+    /// The foot on the interface between two regions; `place` tells where one is that separates them, given the step to its sides.
+    fn foot(
+        &self,
+        [a, b]: [u16; 2],
+        x: &[f64; D],
+        reach: f64,
+        place: &dyn Fn(&Projection<D>, f64) -> Where,
+    ) -> Result<Projection<D>, ProjectionError> {
         let none = || ProjectionError::NotAnInterface { at: x.to_vec(), regions: [a, b], reach };
         let shape =
             self.shape(a.min(b)).filter(|_| a != b && (a.max(b) as usize) < self.len()).ok_or_else(none)?;
         let step = SIDE_STEP * reach;
-        let valid = |p: &Projection<D>| {
+        let placed = |p: &Projection<D>| {
             let sides = [-step, step].map(|t| self.label(&axpy(&p.point, t, &p.normal), 0.0));
-            sides == [a.min(b), a.max(b)]
+            if sides == [a.min(b), a.max(b)] { place(p, step) } else { Where::Along }
         };
         let mut found = shape.project(x, reach)?;
-        if !valid(&found) {
+        let nearest = placed(&found);
+        if nearest != Where::Inside {
             let offsets = (0..D).flat_map(|i| [-0.5 * reach, 0.5 * reach].map(|t| (i, t)));
-            found = offsets
-                .filter_map(|(i, t)| {
-                    let mut start = *x;
-                    start[i] += t;
-                    let p = shape.project(&start, reach).ok().filter(valid)?;
-                    let distance = crate::vector::distance(x, &p.point);
-                    (distance <= reach).then_some(Projection { distance, ..p })
-                })
-                .min_by(|p, q| p.distance.total_cmp(&q.distance))
-                .ok_or_else(none)?;
-            found.distance = found.distance.copysign(shape.level(x));
+            let others = offsets.filter_map(|(i, t)| {
+                let mut start = *x;
+                start[i] += t;
+                let p = shape.project(&start, reach).ok()?;
+                let (place, distance) = (placed(&p), crate::vector::distance(x, &p.point));
+                (distance <= reach && place < Where::Along).then_some((place, Projection { distance, ..p }))
+            });
+            let best = others.min_by(|p, q| p.0.cmp(&q.0).then(p.1.distance.total_cmp(&q.1.distance)));
+            let bends = |p: &Projection<D>| dot(&p.normal, &found.normal) < NO_BEND;
+            found = match best {
+                // The interface leads on beyond the boundary.
+                Some((inside, p)) if nearest == Where::Beyond && (inside != Where::Inside || !bends(&p)) => {
+                    found
+                }
+                None if nearest == Where::Beyond => found,
+                Some((_, mut p)) => {
+                    p.distance = p.distance.copysign(shape.level(x));
+                    p
+                }
+                None => return Err(none()),
+            };
         }
         if a > b {
             found.normal = scale(-1.0, &found.normal);

@@ -39,7 +39,9 @@ pub(super) struct LocalJump<const D: usize> {
 pub(super) fn foot<const D: usize>(problem: &Problem<'_, D>, q: usize, own: u16) -> Option<(Foot<D>, u16)> {
     let x = &problem.cloud.points()[q];
     let reach = 1.5 * problem.supports.radius[q];
-    let project = |other: u16| problem.regions.project(own, other, x, reach).ok().map(|p| (p, other));
+    let project = |other: u16| {
+        problem.regions.project_within(problem.domain, own, other, x, reach).ok().map(|p| (p, other))
+    };
     let found = project(problem.labels[q]).or_else(|| {
         let mut others: Vec<u16> =
             problem.supports.lists.of(q).iter().map(|&j| problem.labels[j as usize]).collect();

@@ -162,7 +162,13 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         let direction: [f64; D] = std::array::from_fn(|k| (to[k] - from[k]) / distance);
         let reach = problem.supports.radius[i];
         // Off the interface by more than the support there is nothing to project on: the middle itself serves.
-        let (foot, normal) = match problem.regions.project(jump.between[0], jump.between[1], &middle, reach) {
+        let (foot, normal) = match problem.regions.project_within(
+            problem.domain,
+            jump.between[0],
+            jump.between[1],
+            &middle,
+            reach,
+        ) {
             Ok(projection) => (projection.point, projection.normal),
             Err(_) => (middle, direction.map(|x| sign * x)),
         };

@@ -65,7 +65,7 @@ fn feet_of<const D: usize>(problem: &Problem<'_, D>, i: usize) -> Option<Vec<Foo
     let mut feet: Vec<Foot<D>> = regions
         .into_iter()
         .filter_map(|beyond| {
-            let at = problem.regions.project(own, beyond, x, REACH * radius).ok()?;
+            let at = problem.regions.project_within(problem.domain, own, beyond, x, REACH * radius).ok()?;
             Some(Foot { beyond, at })
         })
         .collect();

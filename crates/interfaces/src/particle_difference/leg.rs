@@ -123,7 +123,7 @@ impl<'a, const D: usize> Leg<'a, D> {
         let step = self.step * SECOND_STEP / GRADIENT_STEP;
         let there = |tangent: &[f64; D], t: f64| {
             let x = std::array::from_fn(|k| at.point[k] + t * tangent[k]);
-            let foot = problem.regions.project(between[0], between[1], &x, step);
+            let foot = problem.regions.project_within(problem.domain, between[0], between[1], &x, step);
             value.at(&foot.map_or(x, |foot| foot.point))
         };
         let middle = value.at(&at.point);

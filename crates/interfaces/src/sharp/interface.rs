@@ -109,7 +109,8 @@ fn candidates_of<const D: usize>(problem: &Problem<'_, D>, i: usize, tolerance: 
     let (x, spacing) = (&problem.cloud.points()[i], problem.cloud.spacing()[i]);
     let foot = |other: u16| {
         let labels = [own.min(other), own.max(other)];
-        let foot = problem.regions.project(labels[0], labels[1], x, BAND * spacing).ok()?;
+        let foot =
+            problem.regions.project_within(problem.domain, labels[0], labels[1], x, BAND * spacing).ok()?;
         let inside = problem.domain.contains(&foot.point, tolerance);
         inside.then_some(Candidate { at: foot.point, normal: foot.normal, labels, spacing })
     };

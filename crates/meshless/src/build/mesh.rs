@@ -37,6 +37,7 @@ pub(crate) fn particles<const D: usize>(spec: &ParticlesSpec) -> Result<(Vec<[f6
     let (path, text) = spec.place.read_text_beside(&spec.file, MAX_BYTES)?;
     let wrong = |message: String, help: &str| Error::from(spec.place.error(message, help));
     let (mut positions, mut strengths) = (Vec::new(), Vec::new());
+    let mut first = true;
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
@@ -49,13 +50,14 @@ pub(crate) fn particles<const D: usize>(spec: &ParticlesSpec) -> Result<(Vec<[f6
                 strengths.push(values[D]);
             }
             // A first line of names.
-            Err(_) if number == 0 => {}
+            Err(_) if first => {}
             _ => {
                 let message =
                     format!("{}, line {}: expected {} finite numbers", path.display(), number + 1, D + 1);
                 return Err(wrong(message, "each line has the coordinates and the strength of a particle"));
             }
         }
+        first = false;
     }
     Ok((positions, strengths))
 }

@@ -7,6 +7,7 @@ mod mesh;
 mod points;
 mod shapes;
 mod slits;
+mod smooth;
 mod surfaces;
 mod survey;
 
@@ -19,5 +20,6 @@ pub(crate) use mesh::{free_mesh, mesh_cells, particles};
 pub(crate) use points::{Placed, place};
 pub(crate) use shapes::{domain, regions, with_spacing_times};
 pub(crate) use slits::slits;
+pub(crate) use smooth::check_diffusivity_is_smooth;
 pub(crate) use surfaces::triangle_counts;
 pub(crate) use survey::{estimated_nodes, is_curved, sampled_contrast};

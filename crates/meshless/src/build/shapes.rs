@@ -9,6 +9,11 @@ use super::surfaces::surface;
 use crate::Error;
 use crate::scene::{BoundsSpec, DomainSpec, ExprField, GapSpec, LayoutName, Place, Scene, ShapeSpec};
 
+/// Places along each axis at which a level set is tried, in the middles of as many cells but for this: singular points, where it
+/// does not matter, have round coordinates.
+const LEVELS_PER_AXIS: [usize; 3] = [4096, 64, 16];
+const OFF_MIDDLE: f64 = 0.5137;
+
 /// A level set with the derivatives of its expression.
 struct ExprLevelSet<const D: usize> {
     value: Expr,
@@ -30,9 +35,13 @@ pub(crate) fn domain<const D: usize>(scene: &Scene) -> Result<Domain<D>, Error> 
     let DomainSpec { shape: spec, bounds, place } = &scene.domain;
     let bounds = bounds.as_ref().map(aabb).transpose().map_err(|e| located(place, e))?;
     let outer = shape::<D>(spec, place)?;
+    if let Some(bounds) = &bounds {
+        check_level(spec, &outer, bounds, &|_| true, place)?;
+    }
     let mut domain = Domain::from_shape(outer, bounds).map_err(|e| located(place, e))?;
     for hole in &scene.holes {
         let cut = shape::<D>(&hole.shape, &hole.place)?;
+        check_level(&hole.shape, &cut, &domain.bounds(), &|x| domain.contains(x, 0.0), &hole.place)?;
         domain = domain.with_hole(&hole.name, cut).map_err(|e| located(&hole.place, e))?;
     }
     Ok(domain)
@@ -46,6 +55,53 @@ pub(crate) fn regions<const D: usize>(scene: &Scene) -> Result<RegionMap<D>, Err
         .map(|r| r.geometry.as_ref().map(|s| shape::<D>(s, &r.place)).transpose())
         .collect::<Result<Vec<_>, _>>()?;
     RegionMap::new(shapes).map_err(|e| located(&scene.regions[0].place, e))
+}
+
+/// Whether the level sets of the regions are numbers in the domain.
+pub(super) fn check_level_sets<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result<(), Error> {
+    for region in &scene.regions {
+        if let Some(spec) = region.geometry.as_ref().filter(|spec| has_level_set(spec)) {
+            let made = shape::<D>(spec, &region.place)?;
+            check_level(spec, &made, &domain.bounds(), &|x| domain.contains(x, 0.0), &region.place)?;
+        }
+    }
+    Ok(())
+}
+
+/// A level that is no number at a place would leave the place out without a word.
+fn check_level<const D: usize>(
+    spec: &ShapeSpec,
+    shape: &Shape<D>,
+    bounds: &Aabb<D>,
+    counts: &dyn Fn(&[f64; D]) -> bool,
+    place: &Place,
+) -> Result<(), Error> {
+    if !has_level_set(spec) {
+        return Ok(());
+    }
+    let (count, lengths) = (LEVELS_PER_AXIS[D - 1], bounds.lengths());
+    let at = |index: usize| -> [f64; D] {
+        std::array::from_fn(|k| {
+            let along = ((index / count.pow(k as u32)) % count) as f64 + OFF_MIDDLE;
+            bounds.min[k] + lengths[k] * along / count as f64
+        })
+    };
+    let bad = |x: &[f64; D]| shape.level(x).is_nan() && counts(x);
+    let Some(x) = (0..count.pow(D as u32)).map(at).find(bad) else { return Ok(()) };
+    let place = if let ShapeSpec::LevelSet(field) = spec { &field.place } else { place };
+    let help =
+        "a level set must be a number wherever it is evaluated; `if(c, a, b)` guards a root or a logarithm";
+    Err(place.error(format!("the level set gives NaN at {x:?}"), help).into())
+}
+
+fn has_level_set(spec: &ShapeSpec) -> bool {
+    match spec {
+        ShapeSpec::LevelSet(_) => true,
+        ShapeSpec::Union(parts) | ShapeSpec::Intersection(parts) | ShapeSpec::Difference(parts) => {
+            parts.iter().any(has_level_set)
+        }
+        _ => false,
+    }
 }
 
 /// The spacing of the cloud.

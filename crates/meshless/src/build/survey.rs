@@ -2,7 +2,7 @@
 
 use super::fields::materials;
 use super::points::{estimated, file_points};
-use super::shapes::{domain, regions};
+use super::shapes::{check_level_sets, domain, regions};
 use crate::Error;
 use crate::scene::{Scene, ShapeSpec};
 
@@ -24,7 +24,9 @@ pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
 }
 
 fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
-    estimated(scene, &domain::<D>(scene)?)
+    let domain = domain::<D>(scene)?;
+    check_level_sets(scene, &domain)?;
+    estimated(scene, &domain)
 }
 
 /// Largest over smallest diffusivity: of the constants where all are constant, else of samples on a lattice.

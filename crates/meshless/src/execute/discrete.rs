@@ -94,6 +94,9 @@ impl<const D: usize> Discrete<D> {
         }
         let materials = build::materials::<D>(scene);
         let eta = build::nodal_diffusivity(scene, &materials, cloud.points(), &labels)?;
+        if plan.method.params.needs_smooth_diffusivity() {
+            build::check_diffusivity_is_smooth(scene, &materials, &regions, &cloud, &labels, &lists, &eta)?;
+        }
         let source = plan
             .runs(Stage::Source)
             .then(|| build::nodal_source(scene, &materials, cloud.points(), &labels))

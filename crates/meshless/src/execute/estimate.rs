@@ -80,9 +80,12 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
         Ok(coarse) => coarse,
         // A region or a gap that the coarser cloud does not resolve is no fault of the scene.
         Err(error) => {
+            // What an error says of the scene takes several lines.
+            let said = error.to_string();
+            let first = said.lines().next().unwrap_or_default();
             return Ok(Estimate {
                 l2: None,
-                why_not: Some(format!("no solution at twice the spacing: {error}")),
+                why_not: Some(format!("no solution at twice the spacing: {first}")),
             });
         }
     };

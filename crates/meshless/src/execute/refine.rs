@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use super::{Checkpoint, Progress, Solution, execute_once};
 use crate::plan::{AccuracyPlan, Plan};
-use crate::report::{AccuracyReport, Rung};
+use crate::report::{AccuracyReport, Rung, ThinLayerReport};
 use crate::scene::Scene;
 use crate::{Error, build};
 
@@ -27,6 +27,9 @@ const RATIOS: (f64, f64) = (0.35, 0.8);
 
 /// The ratio where the cloud was too coarse to be solved on, or gave no estimate.
 const BLIND_RATIO: f64 = 0.7;
+
+/// The smallest such ratio, towards the spacing at which a layer is seen.
+const LEAST_BLIND_RATIO: f64 = 0.2;
 
 /// The order that is counted on at least, and how far above that of the method an observed one is believed.
 const LEAST_ORDER: f64 = 0.5;
@@ -49,20 +52,21 @@ pub(super) fn refine(
         });
     }
     let mut rungs: Vec<Rung> = Vec::new();
-    let mut refused = None;
+    let (mut refused, mut thin) = (None, None);
     let mut factor = 1.0;
     while rungs.len() < MAX_RUNGS {
         let rung_scene = build::with_spacing_times(scene, factor);
         let rung_plan = Plan::new(&rung_scene)?;
         if rung_plan.predicted.unknowns > goal.max_nodes {
             let needed = rung_plan.predicted.unknowns;
-            return Err(unmet(scene, goal, &rungs, refused, Some(needed)));
+            return Err(unmet(scene, goal, &rungs, refused, thin, Some(needed)));
         }
         let start = Instant::now();
         let (estimate, rung, solution) = match execute_once(&rung_scene, &rung_plan, None, progress) {
             Ok(solution) => {
                 let report = &solution.report;
                 let estimate = report.estimate.l2;
+                thin = report.thin_layer.clone();
                 let why = report.estimate.why_not.clone();
                 let rung =
                     Rung { spacing: report.spacing, unknowns: report.unknowns, why, ..Rung::default() };
@@ -86,18 +90,23 @@ pub(super) fn refine(
                 solution.report.accuracy.iter().flat_map(|a| &a.rungs).map(|r| r.seconds).sum();
             return Ok(solution);
         }
-        factor *= next_ratio(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance);
+        let unseen = thin.as_ref().filter(|layer| !layer.seen).zip(rungs.last());
+        let blind = unseen
+            .map(|(layer, rung)| layer.thickness / rung.spacing)
+            .filter(|ratio| ratio.is_finite())
+            .map_or(BLIND_RATIO, |ratio| ratio.clamp(LEAST_BLIND_RATIO, BLIND_RATIO));
+        factor *= next_ratio(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance, blind);
     }
-    Err(unmet(scene, goal, &rungs, refused, None))
+    Err(unmet(scene, goal, &rungs, refused, thin, None))
 }
 
 /// The ratio of the next spacing to the last one.
-fn next_ratio(rungs: &[Rung], nominal: f64, wanted: f64) -> f64 {
+fn next_ratio(rungs: &[Rung], nominal: f64, wanted: f64, blind: f64) -> f64 {
     let mut known =
         rungs.iter().rev().filter_map(|r| r.estimate.filter(|e| *e > 0.0).map(|e| (r.spacing, e)));
-    let Some((spacing, last)) = known.next() else { return BLIND_RATIO };
+    let Some((spacing, last)) = known.next() else { return blind };
     if rungs.last().is_some_and(|r| r.estimate.is_none()) {
-        return BLIND_RATIO;
+        return blind;
     }
     let observed = known.next().map(|(before, error)| (error / last).ln() / (before / spacing).ln());
     let order = observed.map_or(nominal, |q| q.clamp(LEAST_ORDER, nominal + ORDER_ABOVE));
@@ -110,14 +119,23 @@ fn unmet(
     goal: AccuracyPlan,
     rungs: &[Rung],
     refused: Option<Error>,
+    thin: Option<ThinLayerReport>,
     needed: Option<f64>,
 ) -> Error {
+    // Where a layer is what is missing, nodes elsewhere do not help.
+    let layer = thin.filter(|_| scene.points.gaps.is_none()).map(|layer| {
+        format!(
+            "the region \"{}\" is {:.1e} thin near {:?}: `refine_gaps_to = {:.1e}` in [points] puts the nodes there",
+            layer.region, layer.thickness, layer.at, layer.resolving_spacing
+        )
+    });
     let best = rungs.iter().filter_map(|r| r.estimate.map(|e| (e, r))).min_by(|a, b| a.0.total_cmp(&b.0));
     let Some((estimate, rung)) = best else {
         // No cloud gave an estimate: the first thing to know is why.
         return refused.unwrap_or_else(|| {
             let message = "no cloud that is allowed gives an estimate of the error";
-            located(scene, message.to_owned(), "allow more nodes by `max_nodes`, or give a spacing")
+            let help = layer.as_deref().unwrap_or("allow more nodes by `max_nodes`, or give a spacing");
+            located(scene, message.to_owned(), help)
         });
     };
     let message = format!(
@@ -125,6 +143,7 @@ fn unmet(
         goal.tolerance, rung.unknowns, rung.spacing
     );
     let help = match needed {
+        _ if layer.is_some() => layer.unwrap_or_default(),
         Some(needed) => format!(
             "the next cloud would have {needed:.1e} nodes, and {:.0} are allowed: raise `max_nodes`, take a larger \
              tolerance or another order, or grade the cloud towards corners",

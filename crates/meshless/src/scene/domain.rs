@@ -45,6 +45,9 @@ pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     Ok(DomainSpec { shape, bounds, place: table.place })
 }
 
+/// What to do where nothing says how far apart the nodes are. `--tolerance` takes the place of what the scene has.
+const NO_SPACING: &str = "give `spacing` in [points], or the error to reach: [accuracy] with `tolerance`";
+
 /// With `[accuracy]` the spacing, or all of `[points]`, may be absent.
 pub(super) fn points(
     root: &Table<'_>,
@@ -68,7 +71,7 @@ pub(super) fn points(
                 gaps: None,
                 place: place.clone(),
             }),
-            None => Err(root.missing("points", "")),
+            None => Err(root.missing("points", NO_SPACING)),
         };
     };
     table.allow(&["spacing", "layout", "seed", "file", GAPS])?;
@@ -85,7 +88,7 @@ pub(super) fn points(
         spacing: match (table.get("spacing"), first()) {
             (Some(value), _) => value.expression()?.check_positive()?,
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
-            (None, None) => return Err(table.missing("spacing", "")),
+            (None, None) => return Err(table.missing("spacing", NO_SPACING)),
         },
         layout,
         seed: match table.get("seed") {

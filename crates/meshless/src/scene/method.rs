@@ -164,7 +164,12 @@ fn order(value: &Value<'_>, method: MethodName) -> Result<usize, SceneError> {
         return free_space::order(value);
     }
     if method != MethodName::Sharp {
-        return Ok(value.integer(ORDERS[0], ORDERS[1])? as usize);
+        let order = value.integer(ORDERS[0], ORDERS[1]).map_err(|error| {
+            let sharps = value.integer(ORDERS[1], SHARP_ORDERS[1]).is_ok();
+            let help = "name = \"sharp\" has even orders up to 16, and up to 8 in 3-D";
+            if sharps { value.error(error.message, help) } else { error }
+        })?;
+        return Ok(order as usize);
     }
     let order = value.integer(SHARP_ORDERS[0], SHARP_ORDERS[1])? as usize;
     if order.is_multiple_of(2) {

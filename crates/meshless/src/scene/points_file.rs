@@ -1,8 +1,8 @@
 //! Points from a file of comma-separated values, with the region of each where the file says it.
 //!
 //! Each line has the coordinates of a point and, where the scene's regions have no shapes, a number or a name that tells
-//! its region. Empty lines and what follows a `#` are skipped; a first line that does not begin with a number is taken for
-//! the names of the columns.
+//! its region. Empty lines and what follows a `#` are skipped; a first line of what is left that does not begin with a number is
+//! taken for the names of the columns.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -55,8 +55,8 @@ impl PointsFileSpec {
         let names = regions.map(Names::new);
         let mut file = FilePoints { points: Vec::new(), labels: None, lines: Vec::new(), source };
         let mut labels = Vec::new();
-        let mut start = 0;
-        for (number, line) in text.split_inclusive('\n').enumerate() {
+        let (mut start, mut first) = (0, true);
+        for line in text.split_inclusive('\n') {
             let content = line.split('#').next().unwrap_or_default().trim_end();
             if !content.trim().is_empty() {
                 match file.row(content, start, names.as_ref()) {
@@ -65,9 +65,10 @@ impl PointsFileSpec {
                         file.lines.push([start, start + content.len()]);
                         labels.extend(label);
                     }
-                    Err(_) if number == 0 && !begins_with_number(content) => {}
+                    Err(_) if first && !begins_with_number(content) => {}
                     Err(error) => return Err(error),
                 }
+                first = false;
             }
             start += line.len();
         }

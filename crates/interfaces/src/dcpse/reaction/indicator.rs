@@ -51,7 +51,7 @@ pub(super) fn beyond<const D: usize>(problem: &Problem<'_, D>) -> Vec<Option<(u1
         others.sort_unstable();
         others.dedup();
         let distance = |other: u16| {
-            let foot = problem.regions.project(own, other, x, h).ok()?;
+            let foot = problem.regions.project_within(problem.domain, own, other, x, h).ok()?;
             Some((other, 0.5 - foot.distance.abs() / h))
         };
         let nearest =

@@ -244,7 +244,10 @@ impl<const D: usize> Rows<'_, D> {
                 let x = &self.problem.cloud.points()[i];
                 let h = self.problem.cloud.spacing()[i];
                 let reach = self.problem.supports.radius[i].max(4.0 * self.params.width * h);
-                let Ok(foot) = self.problem.regions.project(a, b, x, reach) else { return 0.0 };
+                let Ok(foot) = self.problem.regions.project_within(self.problem.domain, a, b, x, reach)
+                else {
+                    return 0.0;
+                };
                 let jump = flux.at(&foot.point);
                 match self.params.source {
                     ReactionSource::Operator => jump * self.ramp(i, b, &foot.point, &foot.normal),

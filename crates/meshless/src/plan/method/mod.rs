@@ -9,7 +9,7 @@ mod sharp;
 pub use free_space::{FreeSpaceParams, Transforms};
 use meshless_interfaces::Method;
 use meshless_interfaces::dcpse::{ImmersedInterface, ImmersedParams, ReactionParams, SurfaceReaction};
-use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
+use meshless_interfaces::gfdm::{Gfdm, GfdmParams, Selection};
 use meshless_interfaces::particle_difference::{
     ParticleDifference, ParticleDifferenceExtended, ParticleDifferenceParams,
 };
@@ -100,6 +100,15 @@ impl MethodParams {
         match self {
             Self::Sharp(params) => Self::Sharp(SharpParams { keep_gradients: true, ..*params }),
             params => params.clone(),
+        }
+    }
+
+    /// Whether the rows take the diffusivity of a region for smooth: a jump within it would be lost. Balances take it as it is at
+    /// the nodes.
+    pub(crate) fn needs_smooth_diffusivity(&self) -> bool {
+        match self {
+            Self::Gfdm(params) => params.selection == Selection::None,
+            _ => true,
         }
     }
 

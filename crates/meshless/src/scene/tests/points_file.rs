@@ -55,7 +55,7 @@ fn what_is_wrong_in_the_scene_is_said_at_its_place() {
 
 /// The text of a file of 12 by 12 pixels, the left ones bone.
 fn pixels() -> String {
-    let mut text = "x, y, what # from a scan\n\n".to_owned();
+    let mut text = "# from a scan\nx, y, what\n".to_owned();
     for k in 0..144 {
         let [x, y] = [k % 12, k / 12].map(|i| (f64::from(i) + 0.5) / 12.0);
         text += &format!("{x}, {y}, {}\n", if x < 0.5 { "7.0" } else { "tissue" });

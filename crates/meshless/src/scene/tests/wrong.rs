@@ -78,7 +78,7 @@ fn points_and_holes() {
             wrong("spacing = 0.05", "spacing = «\"-1 + 0.5\"»", "points.spacing", "found -0.5", ""),
             wrong("spacing = 0.05", "spacing = «-inf»", "points.spacing", "finite number", ""),
             wrong("spacing = 0.05", "spacing = \"0.05 +«»\"", "points.spacing", "ends where an operand", ""),
-            wrong("[points]\nspacing = 0.05", "«[points]»", "points.spacing", "missing", ""),
+            wrong("[points]\nspacing = 0.05", "«[points]»", "points.spacing", "missing", "[accuracy] with"),
             wrong("seed = 7", "seed = «-7»", "points.seed", "not below 0, found -7", ""),
             wrong("seed = 7", "seed = «7.0»", "points.seed", "an integer not below 0, found a float", ""),
             wrong(
@@ -323,6 +323,13 @@ fn method() {
             wrong("\"gfdm-hybrid\"", "«2»", "method.name", "expected a string", ""),
             wrong("\"bicgstab\"", "«\"bicg\"»", "method.solver", "unknown name", "bicgstab"),
             wrong("order = 2", "order = «1»", "method.order", "from 2 to 8, found 1", ""),
+            wrong(
+                "order = 2",
+                "order = «12»",
+                "method.order",
+                "from 2 to 8, found 12",
+                "even orders up to 16",
+            ),
             wrong(
                 "name = \"gfdm-hybrid\"\norder = 2",
                 "name = \"sharp\"\norder = «5»",
