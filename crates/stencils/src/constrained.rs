@@ -49,6 +49,7 @@ pub struct ConstrainedFit {
     rotated: Vec<f64>,
     z: Vec<f64>,
     solved: Vec<f64>,
+    remainder: f64,
 }
 
 impl ConstrainedFit {
@@ -117,6 +118,12 @@ impl ConstrainedFit {
         }
     }
 
+    /// What was left of the reproduction of the last functional, relative to its largest entry: not zero where the data do not
+    /// determine all unknowns.
+    pub fn remainder(&self) -> f64 {
+        self.remainder
+    }
+
     /// The functional `v . z` in terms of the data: `on_observations[p]` multiplies `u_p`, `on_constraints[k]`
     /// multiplies `d_k`. Call [`ConstrainedFit::factor`] before.
     ///
@@ -140,6 +147,7 @@ impl ConstrainedFit {
             self.inner.least_norm(&self.rotated[fixed..], &mut self.z[..m - fixed], on_observations);
         on_observations.iter_mut().zip(&self.weights).for_each(|(e, w)| *e *= w);
         let scale = v.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        self.remainder = if remainder > 0.0 { remainder / scale } else { 0.0 };
         if remainder > REPRODUCTION_TOLERANCE * scale || on_observations.iter().any(|e| !e.is_finite()) {
             let rank = fixed + self.inner.rank();
             return Err(StencilError::Unresolvable {

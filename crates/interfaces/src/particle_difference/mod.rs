@@ -83,7 +83,7 @@ fn build<const D: usize>(
         problem.supports.lists,
         || maker.scratch().plain,
         |scratch, i, out| {
-            if is_plain(i) && maker.plain_row(i, scratch, out).is_err() {
+            if is_plain(i) && (maker.plain_row(i, scratch, out).is_err() || !maker.decays(out)) {
                 failed[i].store(true, Ordering::Relaxed);
             }
             Ok::<(), MethodError>(())

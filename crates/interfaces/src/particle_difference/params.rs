@@ -32,6 +32,8 @@ pub struct ParticleDifferenceParams {
     pub visibility: bool,
     /// Fits near the tips of slits have the singular functions there, as far as the slits ask for it.
     pub enrichment: bool,
+    /// In time: where the own value of a row has the wrong sign, or hardly any weight, all neighbours count alike.
+    pub decaying: bool,
 }
 
 impl Default for ParticleDifferenceParams {
@@ -43,6 +45,7 @@ impl Default for ParticleDifferenceParams {
             flux_weights: true,
             visibility: true,
             enrichment: true,
+            decaying: false,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The rows of single nodes.
 
-use meshless_stencils::Functional;
+use meshless_stencils::{Functional, Weight};
 
 use crate::gfdm::add_correction;
 use crate::local::{NodeFit, NodeScratch, enlarged_support};
@@ -33,9 +33,38 @@ pub(super) struct Stencil {
     pub(super) shift: f64,
     /// The operator applied to nodal values of 1; not zero where conditions on slits say something about u itself.
     pub(super) constant: f64,
+    /// What is left of the reproduction, relative to the operator.
+    pub(super) remainder: f64,
     pub(super) constrained: bool,
     pub(super) enlarged: bool,
 }
+
+impl Stencil {
+    /// How wrong the operator is by rounding and by what is left of the reproduction, over its size on a support of this radius.
+    fn inexactness<const D: usize>(&self, functional: &Functional<D>, radius: f64) -> f64 {
+        let length = |v: &[f64; D]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let size = match functional {
+            Functional::Diffusion { eta, .. } => eta / radius.powi(2),
+            Functional::Directional(direction) => length(direction) / radius,
+            Functional::Partial(_) => 1.0 / radius,
+            _ => return 0.0,
+        };
+        f64::EPSILON * self.coefficients.iter().map(|c| c.abs()).sum::<f64>() / size + self.remainder
+    }
+}
+
+/// The own entry of a row over the absolute ones of the others; 1 where none of these has the wrong sign.
+fn own_share(coefficients: &[f64]) -> f64 {
+    coefficients.iter().sum::<f64>() / coefficients.iter().map(|c| c.abs()).sum::<f64>()
+}
+
+/// Error of an operator, over its natural size, from which a larger support is tried: what rounding of the values makes of it, and what is
+/// left of the reproduction. Supports that hardly determine all functions have 1e-8.
+const MOST_INEXACT: f64 = 1e-10;
+
+/// Share of the absolute entries of the others that the own one of a row has at least where u changes with time. In a row of the
+/// wrong sign the node grows by itself.
+const LEAST_OWN: f64 = 0.2;
 
 /// Makes stencils: plain ones where the support does not touch an interface, constrained ones where it does.
 pub(super) struct StencilMaker<'a, const D: usize> {
@@ -44,6 +73,8 @@ pub(super) struct StencilMaker<'a, const D: usize> {
     plain: NodeFit<D>,
     constrained: ConstrainedFit<'a, D>,
     slit: SlitFit<'a, D>,
+    /// The same with all weights alike, where rows have to decay.
+    even: Option<(NodeFit<D>, ConstrainedFit<'a, D>)>,
 }
 
 /// Memory of one thread.
@@ -61,7 +92,11 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
     ) -> Self {
         let plain = NodeFit::new(params.degree, params.weight);
         let (constrained, slit) = (ConstrainedFit::new(problem, feet, params), SlitFit::new(problem, params));
-        Self { problem, feet, plain, constrained, slit }
+        let even = params.decaying.then(|| {
+            let params = ParticleDifferenceParams { weight: Weight::Uniform, ..params };
+            (NodeFit::new(params.degree, params.weight), ConstrainedFit::new(problem, feet, params))
+        });
+        Self { problem, feet, plain, constrained, slit, even }
     }
 
     pub(super) fn scratch(&self) -> MakerScratch<'a, D> {
@@ -90,17 +125,48 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         self.plain.coefficients(&self.diffusion(i), scratch, out).map_err(located)
     }
 
+    /// Whether the node of a row outweighs the others as far as it has to.
+    pub(super) fn decays(&self, coefficients: &[f64]) -> bool {
+        self.even.is_none() || own_share(coefficients) >= LEAST_OWN
+    }
+
     /// The row of an interior node.
     pub(super) fn interior(&self, i: usize, scratch: &mut MakerScratch<'a, D>) -> Result<Row, MethodError> {
         if let Some(row) = self.slit.on_slit(i, self.problem.supports.lists.of(i), &mut scratch.slit)? {
             return Ok(row);
         }
-        let [stencil] = self.stencil(i, &[self.diffusion(i)], false, scratch)?;
-        let Stencil { neighbors, mut coefficients, shift, constant, constrained, enlarged } = stencil;
+        let operator = [self.diffusion(i)];
+        let [mut stencil] = self.stencil(i, &operator, false, scratch)?;
+        if !self.decays(&stencil.coefficients) {
+            stencil = self.calmer(i, stencil, scratch);
+        }
+        let Stencil { neighbors, mut coefficients, shift, constant, constrained, enlarged, .. } = stencil;
         coefficients.iter_mut().for_each(|c| *c = -*c);
         let rhs = self.problem.source.map_or(0.0, |f| f[i]) - shift;
         let kind = if constrained { RowKind::Constrained } else { RowKind::Strong };
         Ok(Row { node: i, neighbors, coefficients, row_sum: -constant, rhs, kind, enlarged })
+    }
+
+    /// In place of a stencil whose own value counts too little: all neighbours alike, then those of the neighbours, too; what comes
+    /// nearest where none does.
+    fn calmer(&self, i: usize, first: Stencil, scratch: &mut MakerScratch<'a, D>) -> Stencil {
+        let Some((plain, constrained)) = &self.even else { return first };
+        let operator = [self.diffusion(i)];
+        let mut best = first;
+        for larger in [false, true] {
+            let all = larger.then(|| enlarged_support(self.problem, i));
+            let neighbors = all.as_deref().unwrap_or_else(|| self.problem.supports.lists.of(i));
+            let found = self.attempt((plain, constrained), (i, neighbors), &operator, false, scratch);
+            if let Ok([found]) = found
+                && own_share(&found.coefficients) > own_share(&best.coefficients)
+            {
+                best = Stencil { enlarged: larger, ..found };
+            }
+            if self.decays(&best.coefficients) {
+                break;
+            }
+        }
+        best
     }
 
     /// The row of a boundary node on which u is not prescribed: the conditions of its faces, added.
@@ -136,7 +202,7 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         })
     }
 
-    /// Stencils of some operators at node i, on a larger support where the given one does not determine them.
+    /// Stencils of some operators at node i, on a larger support where the given one does not determine them, or hardly.
     pub(super) fn stencil<const N: usize>(
         &self,
         i: usize,
@@ -144,27 +210,52 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         correct: bool,
         scratch: &mut MakerScratch<'a, D>,
     ) -> Result<[Stencil; N], MethodError> {
-        let near = self.feet.is_near(i);
-        let meets = self.may_meet_slit(i);
         let attempt = |neighbors: &[u32], scratch: &mut MakerScratch<'a, D>| {
-            if meets && let Some(found) = self.slit.stencils(i, neighbors, functionals, &mut scratch.slit)? {
-                return Ok(found);
-            }
-            if near {
-                self.constrained_stencils(i, neighbors, functionals, correct, scratch)
-            } else {
-                self.plain_stencils(i, neighbors, functionals, correct, &mut scratch.plain)
-            }
+            self.attempt((&self.plain, &self.constrained), (i, neighbors), functionals, correct, scratch)
         };
-        attempt(self.problem.supports.lists.of(i), scratch).or_else(|_| {
-            let mut stencils = attempt(&enlarged_support(self.problem, i), scratch)?;
-            stencils.iter_mut().for_each(|s| s.enlarged = true);
-            Ok(stencils)
-        })
+        let radius = self.problem.supports.radius[i];
+        let inexactness = |stencils: &[Stencil; N]| {
+            let pairs = stencils.iter().zip(functionals);
+            pairs.map(|(s, functional)| s.inexactness(functional, radius)).fold(0.0, f64::max)
+        };
+        let first = attempt(self.problem.supports.lists.of(i), scratch);
+        let least = first.as_ref().map_or(f64::INFINITY, &inexactness);
+        if least <= MOST_INEXACT {
+            return first;
+        }
+        match attempt(&enlarged_support(self.problem, i), scratch) {
+            Ok(mut larger) if inexactness(&larger) < least => {
+                larger.iter_mut().for_each(|s| s.enlarged = true);
+                Ok(larger)
+            }
+            Ok(larger) => first.or(Ok(larger)),
+            Err(error) => first.map_err(|_| error),
+        }
+    }
+
+    /// The same by some fits over some neighbours.
+    fn attempt<const N: usize>(
+        &self,
+        fits: (&NodeFit<D>, &ConstrainedFit<'a, D>),
+        (i, neighbors): (usize, &[u32]),
+        functionals: &[Functional<D>; N],
+        correct: bool,
+        scratch: &mut MakerScratch<'a, D>,
+    ) -> Result<[Stencil; N], MethodError> {
+        if self.may_meet_slit(i)
+            && let Some(found) = self.slit.stencils(i, neighbors, functionals, &mut scratch.slit)?
+        {
+            return Ok(found);
+        }
+        match self.feet.is_near(i) {
+            true => self.constrained_stencils(fits, i, neighbors, functionals, correct, scratch),
+            false => self.plain_stencils(fits.0, i, neighbors, functionals, correct, &mut scratch.plain),
+        }
     }
 
     fn constrained_stencils<const N: usize>(
         &self,
+        (plain_fit, fit): (&NodeFit<D>, &ConstrainedFit<'a, D>),
         i: usize,
         neighbors: &[u32],
         functionals: &[Functional<D>; N],
@@ -172,19 +263,17 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         scratch: &mut MakerScratch<'a, D>,
     ) -> Result<[Stencil; N], MethodError> {
         let MakerScratch { plain, constrained, .. } = scratch;
-        self.constrained.sort(i, neighbors, constrained)?;
+        fit.sort(i, neighbors, constrained)?;
         if constrained.sides.is_smooth() && constrained.sides.kept.len() == neighbors.len() {
-            return self.plain_stencils(i, neighbors, functionals, correct, plain);
+            return self.plain_stencils(plain_fit, i, neighbors, functionals, correct, plain);
         }
-        self.constrained.factor(i, constrained)?;
+        fit.factor(i, constrained)?;
         let located = |source| MethodError::stencil(i, &self.problem.cloud.points()[i], source);
         let mut stencils = std::array::from_fn(|_| Stencil::default());
         for (stencil, functional) in stencils.iter_mut().zip(functionals) {
-            self.constrained
-                .coefficients(functional, constrained, &mut stencil.coefficients)
-                .map_err(located)?;
+            fit.coefficients(functional, constrained, &mut stencil.coefficients).map_err(located)?;
             if correct {
-                let xi = self.constrained.correction(constrained).map_err(located)?;
+                let xi = fit.correction(constrained).map_err(located)?;
                 add_correction(&mut stencil.coefficients, xi);
             }
             let shifts = &constrained.sides.shifts;
@@ -197,6 +286,7 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
 
     fn plain_stencils<const N: usize>(
         &self,
+        fit: &NodeFit<D>,
         i: usize,
         neighbors: &[u32],
         functionals: &[Functional<D>; N],
@@ -204,14 +294,14 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         scratch: &mut NodeScratch<D>,
     ) -> Result<[Stencil; N], MethodError> {
         let located = |source| MethodError::stencil(i, &self.problem.cloud.points()[i], source);
-        self.plain.factor(self.problem, i, neighbors, scratch).map_err(located)?;
+        fit.factor(self.problem, i, neighbors, scratch).map_err(located)?;
         let mut stencils = std::array::from_fn(|_| Stencil::default());
         for (stencil, functional) in stencils.iter_mut().zip(functionals) {
             stencil.coefficients.resize(neighbors.len(), 0.0);
-            self.plain.coefficients(functional, scratch, &mut stencil.coefficients).map_err(located)?;
+            fit.coefficients(functional, scratch, &mut stencil.coefficients).map_err(located)?;
             if correct {
                 let mut xi = vec![0.0; neighbors.len()];
-                self.plain.correction(scratch, &mut xi).map_err(located)?;
+                fit.correction(scratch, &mut xi).map_err(located)?;
                 add_correction(&mut stencil.coefficients, &xi);
             }
             stencil.neighbors = neighbors.to_vec();

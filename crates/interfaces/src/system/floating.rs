@@ -103,7 +103,8 @@ fn not_held<const D: usize>(
     }
 }
 
-/// Whether rows of a cluster that reach outside tie it to there by far more than balances would.
+/// Whether rows of a cluster that reach outside tie it to there by far more than balances would. Rows that reach nothing else say
+/// nothing: what ties a node to its cluster has no size in them.
 fn is_held(
     cluster: &Cluster,
     components: &[ComponentInfo],
@@ -115,6 +116,9 @@ fn is_held(
     let (mut crossing, mut holding) = (0_u32, 0_u32);
     for i in (0..matrix.n()).filter(|&i| inside(i)) {
         let (columns, row) = matrix.row(i);
+        if columns.iter().all(|&j| !inside(j as usize)) {
+            continue;
+        }
         let (mut tie, mut soft, mut largest) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (&j, a) in columns.iter().zip(row) {
             largest = largest.max(a.abs());

@@ -243,6 +243,7 @@ impl<const D: usize> SlitScratch<D> {
             neighbors: self.view.kept.clone(),
             coefficients: self.on_nodes[own..].to_vec(),
             shift: by_jumps - by_conditions,
+            remainder: self.fit.remainder(),
             constant: of_constant - constant,
             constrained: true,
             enlarged: false,

@@ -22,6 +22,7 @@ pub(super) fn params(scene: &Scene) -> ParticleDifferenceParams {
         flux_weights: options.flux_weights.unwrap_or(chosen.flux_weights),
         visibility: options.visibility.unwrap_or(chosen.visibility),
         enrichment: chosen.enrichment,
+        decaying: scene.time.is_some(),
         // The second derivative at an interface would follow from the steady equation: with a du/dt it is not known.
         wedge: options.wedge.map_or(
             if scene.time.is_some() { Wedge::Varying } else { chosen.wedge },
