@@ -73,7 +73,7 @@ fn scenes() -> Result<Table, Failure> {
     let mut table = Table::new(&["scene", "nodes", "error", "seconds", "target: error", "target: seconds"]);
     let interior = |contrast, spacing| kraus::interior(contrast, kraus::SUPPORT * spacing, 1);
     for contrast in [1e2, 1e10] {
-        for (order, spacing, target) in [(8, 0.12, [1e-8, 0.03]), (8, 0.07, [1e-11, 0.1])] {
+        for (order, spacing, target) in [(8, 0.14, [1e-8, 0.03]), (8, 0.07, [1e-11, 0.1])] {
             let name = format!("interior, {contrast:e}, order {order}");
             row(&mut table, &name, &reports(&interior(contrast, spacing), order)?, target);
         }

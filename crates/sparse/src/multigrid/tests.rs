@@ -1,5 +1,6 @@
 //! What the levels must be whatever the matrix.
 
+use super::transfers::restriction;
 use super::*;
 use crate::difference::DifferenceMatrix;
 use proptest::prelude::*;

@@ -150,6 +150,26 @@ pub(super) fn solve(
 }
 
 impl Solved {
+    /// The run on the source with two scales.
+    pub(super) fn of_two_scales(&self, variant: &'static str, order: usize) -> Run {
+        let [l2, linf, worst] = self.errors(&two_scales(), false);
+        let n = self.finest();
+        Run {
+            case: SCALES,
+            variant,
+            kernel: Kernel::Gaussian { order, smoothing: Some(2.0) },
+            n,
+            dimension: 2,
+            spacing: 2.0 / n as f64,
+            points: self.points(),
+            l2,
+            linf,
+            worst,
+            plan_seconds: self.plan_seconds,
+            solve_seconds: self.solve_seconds,
+        }
+    }
+
     /// Points of all meshes that sources were sampled on.
     pub(super) fn points(&self) -> usize {
         (0..self.plan.len()).map(|i| self.plan.source_mesh(i).len()).sum()
@@ -274,20 +294,5 @@ pub(super) fn refined(
         corner = round.first.map(|c| 2 * c);
     }
     let params = RefineParams { order, smoothing: Some(2.0), superposition, ..RefineParams::default() };
-    let solved = solve(&base, &patches, params, &bumps)?;
-    let [l2, linf, worst] = solved.errors(&bumps, false);
-    Ok(Run {
-        case: SCALES,
-        variant,
-        kernel: Kernel::Gaussian { order, smoothing: Some(2.0) },
-        n,
-        dimension: 2,
-        spacing: 2.0 / n as f64,
-        points: solved.points(),
-        l2,
-        linf,
-        worst,
-        plan_seconds: solved.plan_seconds,
-        solve_seconds: solved.solve_seconds,
-    })
+    Ok(solve(&base, &patches, params, &bumps)?.of_two_scales(variant, order))
 }

@@ -1,8 +1,8 @@
 //! Patches chosen by the estimate of the error: a source with two scales to a tolerance.
 
-use meshless_freespace::{Centring, Kernel, Mesh, RefineParams, TreeParams, suggest_tree};
+use meshless_freespace::{Centring, Mesh, RefineParams, TreeParams, suggest_tree};
 
-use super::patches::{SCALES, solve, two_scales};
+use super::patches::{solve, two_scales};
 use super::problems;
 use super::runs::Run;
 
@@ -24,22 +24,8 @@ pub(super) fn run(order: usize, (variant, tolerance): (&'static str, f64)) -> Re
         .map_err(said)?;
     let choice = start.elapsed().as_secs_f64();
     let solved = solve(&base, &tree, refine, &bumps)?;
-    let [l2, linf, worst] = solved.errors(&bumps, false);
-    let n = solved.finest();
-    Ok(Run {
-        case: SCALES,
-        variant,
-        kernel: Kernel::Gaussian { order, smoothing: Some(2.0) },
-        n,
-        dimension: 2,
-        spacing: 2.0 / n as f64,
-        points: solved.points(),
-        l2,
-        linf,
-        worst,
-        plan_seconds: choice + solved.plan_seconds,
-        solve_seconds: solved.solve_seconds,
-    })
+    let run = solved.of_two_scales(variant, order);
+    Ok(Run { plan_seconds: choice + run.plan_seconds, ..run })
 }
 
 /// Levels that were chosen.
