@@ -67,8 +67,8 @@ fn one_material(text: &str) -> String {
     }
 }
 
-/// Seconds from points to solution, with the gradients at the nodes, which come with the rows; and the error; targets are what a finite-element code of curved elements of order 4
-/// needs where that converges, and less where it does not.
+/// Seconds from points to solution, with the gradients at the nodes, which come with the rows; and the error. Targets are what a
+/// finite-element code of curved elements of order 4 needs where that converges, and less where it does not.
 fn scenes() -> Result<Table, Failure> {
     let mut table = Table::new(&["scene", "nodes", "error", "seconds", "target: error", "target: seconds"]);
     let interior = |contrast, spacing| kraus::interior(contrast, kraus::SUPPORT * spacing, 1);

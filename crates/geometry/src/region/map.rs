@@ -173,7 +173,7 @@ impl<const D: usize> RegionMap<D> {
             let bends = |p: &Projection<D>| dot(&p.normal, &found.normal) < NO_BEND;
             found = match best {
                 // The interface leads on beyond the boundary.
-                Some((inside, p)) if nearest == Where::Beyond && (inside != Where::Inside || !bends(&p)) => {
+                Some((place, p)) if nearest == Where::Beyond && (place != Where::Inside || !bends(&p)) => {
                     found
                 }
                 None if nearest == Where::Beyond => found,

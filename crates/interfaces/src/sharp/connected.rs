@@ -1,14 +1,15 @@
 //! The connected parts of the regions.
 //!
-//! Nodes of one region are connected where no third node lies between them. In a gap thinner than the spacing nodes of both sides always
-//! do, so that a node in it would be a part by itself, whose polynomial nothing but the node and two or three points of the interface
-//! determine. Such parts are joined to what the way to leads through their own region.
+//! Nodes of one region are connected where no third node lies between them. In a gap thinner than the spacing nodes of both sides
+//! do, so that a node in it would be a part by itself, whose polynomial nothing but the node and two or three points of the
+//! interface determine. Such parts are joined to those that a straight way through their own region leads to.
+
+use std::collections::BTreeMap;
 
 use meshless_geometry::RegionGraph;
 use meshless_neighbors::CellList;
 
-use crate::system::region_graph;
-use crate::{MethodError, Problem, parallel};
+use crate::{MethodError, Problem, adjacent_pairs, parallel};
 
 /// Nodes round that of a small part that are asked.
 const NODES_ASKED: usize = 48;
@@ -29,12 +30,15 @@ impl ConnectedParts {
         problem: &Problem<'_, D>,
         nodes: &CellList<'_, D>,
     ) -> Result<Self, MethodError> {
-        let mut graph = region_graph(problem, &[])?;
+        let Problem { cloud, labels, .. } = *problem;
+        let mut pairs = adjacent_pairs(cloud.points(), problem.supports.lists);
+        let mut graph = RegionGraph::new(cloud, labels, &pairs)?;
         let ways = ways(problem, &graph, nodes);
         if !ways.is_empty() {
-            graph = region_graph(problem, &ways)?;
+            pairs.extend(ways);
+            graph = RegionGraph::new(cloud, labels, &pairs)?;
         }
-        let of_node = (0..problem.cloud.len() as u32).map(|i| graph.component_of(i)).collect();
+        let of_node = (0..cloud.len() as u32).map(|i| graph.component_of(i)).collect();
         Ok(Self { graph, of_node })
     }
 }
@@ -46,13 +50,7 @@ fn ways<const D: usize>(
     graph: &RegionGraph,
     nodes: &CellList<'_, D>,
 ) -> Vec<(u32, u32)> {
-    let parts = graph.components();
-    let is_largest: Vec<bool> = (0..parts.len())
-        .map(|c| {
-            let others = parts.iter().enumerate().filter(|(_, p)| p.label == parts[c].label);
-            others.map(|(k, p)| (p.nodes, std::cmp::Reverse(k))).max().is_some_and(|(_, k)| k.0 == c)
-        })
-        .collect();
+    let is_largest = largest(graph);
     if !is_largest.contains(&false) {
         return Vec::new();
     }
@@ -71,6 +69,19 @@ fn ways<const D: usize>(
             }
         }
     })
+}
+
+/// Which parts are the largest of their region, the first of equals.
+fn largest(graph: &RegionGraph) -> Vec<bool> {
+    let parts = graph.components();
+    let mut of_label = BTreeMap::new();
+    for (k, part) in parts.iter().enumerate() {
+        let best = of_label.entry(part.label).or_insert(k);
+        if part.nodes > parts[*best].nodes {
+            *best = k;
+        }
+    }
+    parts.iter().enumerate().map(|(k, part)| of_label.get(&part.label) == Some(&k)).collect()
 }
 
 /// Whether the straight way between two nodes of a region stays in it.

@@ -48,12 +48,8 @@ impl FloatingParts {
 }
 
 /// The connected parts of the regions of a problem, and which of them have nodes that are neighbours.
-pub(crate) fn region_graph<const D: usize>(
-    problem: &Problem<'_, D>,
-    joined: &[(u32, u32)],
-) -> Result<RegionGraph, MethodError> {
-    let mut pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
-    pairs.extend_from_slice(joined);
+fn region_graph<const D: usize>(problem: &Problem<'_, D>) -> Result<RegionGraph, MethodError> {
+    let pairs = adjacent_pairs(problem.cloud.points(), problem.supports.lists);
     Ok(RegionGraph::new(problem.cloud, problem.labels, &pairs)?)
 }
 
@@ -144,7 +140,7 @@ pub(super) fn split<const D: usize>(
     if !levels_differ(problem) {
         return Ok(None);
     }
-    let graph = region_graph(problem, &[])?;
+    let graph = region_graph(problem)?;
     let count = graph.components().len();
     let component: Vec<u32> = nodes.iter().map(|&node| graph.component_of(node)).collect();
     let found = not_held(problem, &graph, matrix, &component);

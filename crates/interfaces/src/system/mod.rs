@@ -12,7 +12,7 @@ use meshless_sparse::{SolveInfo, SolverParams, Split};
 
 use crate::{Discretization, MethodError, Problem};
 use floating::Floating;
-pub(crate) use floating::{FloatingParts, region_graph};
+pub(crate) use floating::FloatingParts;
 pub use linear::{LinearSystem, linear_system};
 pub use mass::{Mass, MassRows, residual};
 pub use prepared::PreparedSystem;

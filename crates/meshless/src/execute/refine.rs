@@ -142,14 +142,16 @@ fn unmet(
         "a relative error of {:.1e} was not reached: the estimate is {estimate:.1e} on {} nodes of spacing {:.3e}",
         goal.tolerance, rung.unknowns, rung.spacing
     );
-    let help = match needed {
-        _ if layer.is_some() => layer.unwrap_or_default(),
-        Some(needed) => format!(
+    let help = match (layer, needed) {
+        (Some(layer), _) => layer,
+        (None, Some(needed)) => format!(
             "the next cloud would have {needed:.1e} nodes, and {:.0} are allowed: raise `max_nodes`, take a larger \
              tolerance or another order, or grade the cloud towards corners",
             goal.max_nodes
         ),
-        None => "the error does not fall any more: take a larger tolerance, or another method".to_owned(),
+        (None, None) => {
+            "the error does not fall any more: take a larger tolerance, or another method".to_owned()
+        }
     };
     located(scene, message, &help)
 }
