@@ -80,7 +80,13 @@ fn every_cargo_command_names_what_there_is() {
 }
 
 #[test]
-fn the_picture_is_small() {
-    let size = std::fs::metadata(root().join("docs/images/plate.svg")).unwrap().len();
-    assert!(size < 150_000, "{size} bytes");
+fn its_pictures_are_small() {
+    let text = readme();
+    let pictures: Vec<&str> =
+        text.split(['(', ')']).filter(|part| part.starts_with("docs/images/")).collect();
+    assert!(pictures.len() >= 3, "{pictures:?}");
+    for picture in pictures {
+        let size = std::fs::metadata(root().join(picture)).unwrap().len();
+        assert!(size < 160_000, "{picture}: {size} bytes");
+    }
 }
