@@ -11,20 +11,25 @@ const PARALLEL_FROM: usize = 8 * BLOCK;
 /// Independent partial sums within a block, for the sake of vector instructions.
 const LANES: usize = 8;
 
-fn block_dot(x: &[f64], y: &[f64]) -> f64 {
+/// A number of single or double precision.
+pub(crate) trait Real: Copy + Into<f64> + Sync {}
+
+impl<T: Copy + Into<f64> + Sync> Real for T {}
+
+fn block_dot<T: Real>(x: &[f64], y: &[T]) -> f64 {
     let mut lanes = [0.0; LANES];
     let (x_lanes, x_rest) = x.as_chunks::<LANES>();
     let (y_lanes, y_rest) = y.as_chunks::<LANES>();
     for (a, b) in x_lanes.iter().zip(y_lanes) {
         for k in 0..LANES {
-            lanes[k] += a[k] * b[k];
+            lanes[k] += a[k] * b[k].into();
         }
     }
-    lanes.iter().sum::<f64>() + x_rest.iter().zip(y_rest).map(|(a, b)| a * b).sum::<f64>()
+    lanes.iter().sum::<f64>() + x_rest.iter().zip(y_rest).map(|(a, &b)| a * b.into()).sum::<f64>()
 }
 
 /// `x . y`
-pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+pub(crate) fn dot<T: Real>(x: &[f64], y: &[T]) -> f64 {
     if x.len() < PARALLEL_FROM {
         return x.chunks(BLOCK).zip(y.chunks(BLOCK)).map(|(a, b)| block_dot(a, b)).sum();
     }
@@ -46,8 +51,8 @@ pub(crate) fn norm_max(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m: f64, v| if v.abs() > m || v.is_nan() { v.abs() } else { m })
 }
 
-fn update(y: &mut [f64], x: &[f64], f: impl Fn(&mut f64, f64) + Sync) {
-    let step = |(y, x): (&mut [f64], &[f64])| y.iter_mut().zip(x).for_each(|(y, x)| f(y, *x));
+fn update<T: Real>(y: &mut [f64], x: &[T], f: impl Fn(&mut f64, f64) + Sync) {
+    let step = |(y, x): (&mut [f64], &[T])| y.iter_mut().zip(x).for_each(|(y, &x)| f(y, x.into()));
     if y.len() < PARALLEL_FROM {
         step((y, x));
     } else {
@@ -59,7 +64,7 @@ fn update(y: &mut [f64], x: &[f64], f: impl Fn(&mut f64, f64) + Sync) {
 }
 
 /// `y += alpha x`
-pub(crate) fn axpy(alpha: f64, x: &[f64], y: &mut [f64]) {
+pub(crate) fn axpy<T: Real>(alpha: f64, x: &[T], y: &mut [f64]) {
     update(y, x, |y, x| *y += alpha * x);
 }
 

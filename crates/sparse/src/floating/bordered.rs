@@ -25,7 +25,7 @@ pub struct Bordered {
     pinned: Vec<u32>,
     rhs: Vec<f64>,
     /// `s`, see [`Bordered::with_scales`]; empty where all are 1.
-    scales: Vec<f64>,
+    scales: Arc<[f64]>,
     /// How nodal values are made of all unknowns, where that is known.
     split: Option<Split>,
 }
@@ -80,7 +80,7 @@ impl Bordered {
                 });
             }
         }
-        Ok(Self { matrix, columns, pinned, rhs, scales: Vec::new(), split: None })
+        Ok(Self { matrix, columns, pinned, rhs, scales: Arc::default(), split: None })
     }
 
     /// The same, with the scales `s` of the values: fields that are smooth and cheap are smooth in `s w`, not in `w`, and
@@ -93,7 +93,7 @@ impl Bordered {
         if let Some(node) = scales.iter().position(|s| !(*s > 0.0 && s.is_finite())) {
             return Err(MatrixError::BadNumber { what: "scale of the node", node, value: scales[node] });
         }
-        self.scales = if scales.iter().all(|&s| s == 1.0) { Vec::new() } else { scales };
+        self.scales = if scales.iter().all(|&s| s == 1.0) { Arc::default() } else { Arc::from(scales) };
         Ok(self)
     }
 
@@ -129,14 +129,19 @@ impl Bordered {
         &self.scales
     }
 
+    /// The scales, to be shared.
+    pub(super) fn shared_scales(&self) -> Arc<[f64]> {
+        Arc::clone(&self.scales)
+    }
+
     /// `x` becomes `s x`.
     pub(super) fn scale(&self, x: &mut [f64]) {
-        x.iter_mut().zip(&self.scales).for_each(|(x, s)| *x *= s);
+        x.iter_mut().zip(&*self.scales).for_each(|(x, s)| *x *= s);
     }
 
     /// `x` becomes `x / s`.
     pub(super) fn unscale(&self, x: &mut [f64]) {
-        x.iter_mut().zip(&self.scales).for_each(|(x, s)| *x /= s);
+        x.iter_mut().zip(&*self.scales).for_each(|(x, s)| *x /= s);
     }
 
     /// `1 / s` of a node.

@@ -117,6 +117,9 @@ impl Eliminated {
     }
 
     fn once(&self, system: &Bordered, b: &[f64]) -> Result<(Vec<f64>, Vec<f64>, SolveInfo), SolveError> {
+        if system.extra() == 0 {
+            return self.prepared.solve(b).map(|(w, info)| (w, Vec::new(), info));
+        }
         let (mut w, info) = self.prepared.solve(&system.without_pinned(b.to_vec()))?;
         let carried = system.border_rows(&w);
         let g: Vec<f64> = system.pinned().iter().zip(&carried).map(|(&p, row)| b[p as usize] - row).collect();

@@ -18,6 +18,7 @@ use crate::csr::for_each_row;
 use crate::multigrid::{HierarchyInfo, Multigrid, Scaling};
 use crate::precond::Preconditioner;
 use crate::solver::{SolveError, SolveInfo, SolverParams, levels_of};
+use std::sync::Arc;
 
 /// The smallest scale for which rounding leaves the preconditioner three digits.
 const LEAST_SCALE: f64 = 1e-13;
@@ -41,16 +42,17 @@ pub(super) fn split(system: &Bordered) -> Option<&Split> {
 pub(super) struct Nodal {
     multigrid: Multigrid,
     /// What the rows are multiplied by.
-    factors: Vec<f64>,
+    factors: Arc<[f64]>,
 }
 
 impl Nodal {
     /// # Errors
     /// Those of [`Multigrid::new`].
     pub(super) fn new(system: &Bordered, params: &SolverParams) -> Result<Self, SolveError> {
-        let factors = system.factors();
-        let scaling = Scaling { rows: factors.clone(), unknowns: system.scales().to_vec() };
-        let multigrid = Multigrid::of(system.shared_matrix(), None, scaling, &levels_of(params))?;
+        let factors: Arc<[f64]> = Arc::from(system.factors());
+        let unknowns = system.shared_scales();
+        let scaling = Scaling { rows: Arc::clone(&factors), unknowns, ..Scaling::default() };
+        let multigrid = Multigrid::of(system.shared_matrix(), scaling, &levels_of(params))?;
         Ok(Self { multigrid, factors })
     }
 

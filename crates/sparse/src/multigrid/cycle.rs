@@ -33,9 +33,15 @@ impl Multigrid {
         }
         let r = &mut t[..n];
         this.a.residual(x, b, r);
+        if level == 0 {
+            self.frame.weigh(r);
+        }
         this.r.mul_vec(r, b_coarse);
         self.correct(level + 1, b_coarse, x_coarse, scratch);
-        this.p.mul_vec_add(1.0, x_coarse, x);
+        match level {
+            0 => this.p.add_to(x_coarse, x, |i| self.frame.unit(i)),
+            _ => this.p.add_to(x_coarse, x, |_| 1.0),
+        }
         for _ in 0..self.params.sweeps {
             this.smoother.after(&this.a, b, x, t);
         }

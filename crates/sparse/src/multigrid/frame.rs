@@ -4,6 +4,7 @@ use super::{Candidate, MultigridParams, candidate, galerkin, kept, numbering};
 use crate::csr::for_each_row;
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
+use crate::parallel;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -11,19 +12,22 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub(crate) struct Scaling {
     /// F; ones where it is empty.
-    pub(crate) rows: Vec<f64>,
+    pub(crate) rows: Arc<[f64]>,
     /// S: the unknowns of the matrix times this are smooth where errors are cheap. Ones where it is empty.
-    pub(crate) unknowns: Vec<f64>,
+    pub(crate) unknowns: Arc<[f64]>,
+    /// What rows of the matrix count for in sums over rows. Ones where it is empty.
+    pub(crate) weights: Arc<[f64]>,
 }
 
 /// How the unknowns of the finest level follow from those of the system that is solved.
 #[derive(Debug)]
 pub(crate) struct Frame {
+    n: usize,
     scaling: Scaling,
     /// Element `k` of the levels is element `order[k]` outside; where this is none, `k`.
     order: Option<Vec<u32>>,
-    /// The candidate, in the order of the levels; the constant where this is none.
-    candidate: Option<Vec<f64>>,
+    /// The candidate in steps of [`candidate::value`], in the order of the levels; the constant where this is empty.
+    candidate: Vec<u16>,
 }
 
 impl Frame {
@@ -34,10 +38,10 @@ impl Frame {
         params: &MultigridParams,
     ) -> Result<(Self, Arc<DifferenceMatrix>), MatrixError> {
         let order = if params.renumber { numbering::found(matrix.off_diagonal()) } else { None };
-        let mut frame = Self { scaling, order, candidate: None };
+        let mut frame = Self { n: matrix.n(), scaling, order, candidate: Vec::new() };
         let matrix = frame.matrix(matrix)?;
         if params.candidate == Candidate::Relaxed {
-            frame.candidate = Some(candidate::relaxed(&matrix, &frame.scales())?);
+            frame.candidate = candidate::relaxed(&matrix, &frame.scales())?;
         }
         Ok((frame, matrix))
     }
@@ -60,20 +64,55 @@ impl Frame {
         }
     }
 
-    /// What coarse unknowns of 1 are on the finest level, `S^-1 c`, where they are not ones.
-    pub(crate) fn units(&self) -> Option<Cow<'_, [f64]>> {
-        let scales = self.scales();
-        match &self.candidate {
-            None if scales.is_empty() => None,
-            None => Some(Cow::Owned(scales.iter().map(|s| 1.0 / s).collect())),
-            Some(c) if scales.is_empty() => Some(Cow::Borrowed(c)),
-            Some(c) => Some(Cow::Owned(c.iter().zip(&*scales).map(|(c, s)| c / s).collect())),
+    /// The place outside of element `i` of the levels.
+    #[inline]
+    fn outside(&self, i: usize) -> usize {
+        self.order.as_ref().map_or(i, |order| order[i] as usize)
+    }
+
+    #[inline]
+    fn candidate(&self, i: usize) -> f64 {
+        self.candidate.get(i).map_or(1.0, |&c| candidate::value(c))
+    }
+
+    /// What a coarse unknown of 1 is at node `i` of the finest level, `S^-1 c`.
+    #[inline]
+    pub(crate) fn unit(&self, i: usize) -> f64 {
+        let scale = self.scaling.unknowns.get(self.outside(i)).copied().unwrap_or(1.0);
+        self.candidate(i) / scale
+    }
+
+    /// What row `i` of the finest level counts for. Rows and columns are multiplied by the candidate alike, which keeps a symmetric
+    /// matrix symmetric.
+    #[inline]
+    fn weight(&self, i: usize) -> f64 {
+        let weight = self.scaling.weights.get(self.outside(i)).copied().unwrap_or(1.0);
+        self.candidate(i) * weight
+    }
+
+    /// [`Frame::unit`] of all nodes, where they are not ones.
+    pub(crate) fn units(&self) -> Option<Vec<f64>> {
+        let ones = self.candidate.is_empty() && self.scaling.unknowns.is_empty();
+        (!ones).then(|| parallel::map_rows(self.n, |i| self.unit(i)))
+    }
+
+    /// [`Frame::weight`] of all rows, where they are not ones.
+    pub(crate) fn weights(&self) -> Option<Vec<f64>> {
+        let ones = self.candidate.is_empty() && self.scaling.weights.is_empty();
+        (!ones).then(|| parallel::map_rows(self.n, |i| self.weight(i)))
+    }
+
+    /// Residuals of the finest level as they count in sums over rows.
+    pub(crate) fn weigh(&self, r: &mut [f64]) {
+        if !(self.candidate.is_empty() && self.scaling.weights.is_empty()) {
+            for_each_row(r, |i, r| *r *= self.weight(i));
         }
     }
 
     /// The matrix of the finest level times [`Frame::units`].
     pub(crate) fn row_sums(&self, a: &DifferenceMatrix) -> Vec<f64> {
-        galerkin::row_sums(a, self.candidate.as_deref(), &self.scales())
+        let candidate = |i: usize| self.candidate(i);
+        galerkin::row_sums(a, (!self.candidate.is_empty()).then_some(&candidate), &self.scales())
     }
 
     /// The unknowns of the finest level that stay as they are.
@@ -81,24 +120,10 @@ impl Frame {
         kept::rows(a, &self.scales(), keep)
     }
 
-    /// Bytes that it keeps.
+    /// Bytes that it keeps, without what it shares.
     pub(crate) fn bytes(&self) -> usize {
         let order = self.order.as_ref().map_or(0, |order| size_of_val(&**order));
-        let vectors = [&self.scaling.rows, &self.scaling.unknowns].into_iter().chain(&self.candidate);
-        order + vectors.map(|x| size_of_val(&**x)).sum::<usize>()
-    }
-
-    /// What rows count for. Rows and columns are multiplied by the candidate alike, which keeps a symmetric matrix symmetric.
-    pub(crate) fn weights<'a>(&'a self, weights: Option<&'a [f64]>) -> Option<Cow<'a, [f64]>> {
-        let ordered = match (&self.order, weights) {
-            (Some(order), Some(weights)) => Some(Cow::Owned(taken(order, weights).collect())),
-            _ => weights.map(Cow::Borrowed),
-        };
-        match (&self.candidate, ordered) {
-            (None, ordered) => ordered,
-            (Some(c), None) => Some(Cow::Borrowed(c)),
-            (Some(c), Some(weights)) => Some(Cow::Owned(weights.iter().zip(c).map(|(w, c)| w * c).collect())),
-        }
+        order + size_of_val(&*self.candidate) + size_of_val(&*self.scaling.weights)
     }
 
     /// Elements of scratch that a change of order or of rows needs.

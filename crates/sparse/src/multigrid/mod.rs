@@ -11,6 +11,7 @@ mod energy;
 mod evolution;
 mod frame;
 mod galerkin;
+mod interpolation;
 mod kept;
 mod numbering;
 mod pairwise;
@@ -32,6 +33,7 @@ use coarse::Coarse;
 pub(crate) use coarse::floating_parts;
 use frame::Frame;
 pub(crate) use frame::Scaling;
+use interpolation::Interpolation;
 pub use params::{
     Candidate, Coarsening, CycleKind, HierarchyInfo, MultigridParams, ProlongationKind, Restriction,
     SmootherKind, StrengthKind,
@@ -47,8 +49,10 @@ const MAX_LEVELS: usize = 25;
 #[derive(Debug)]
 struct Level {
     a: Arc<DifferenceMatrix>,
-    p: Csr,
-    r: Csr,
+    /// Weights that add up to 1 in every row or are none; on the finest level they count in [`Frame::units`].
+    p: Interpolation,
+    /// The same for restriction, in [`Frame::weights`].
+    r: Interpolation,
     smoother: Smoother,
 }
 
@@ -61,6 +65,9 @@ pub struct Multigrid {
     params: MultigridParams,
     info: HierarchyInfo,
 }
+
+/// Prolongation, restriction and matrix of a level that is to follow.
+type NextLevel = (Interpolation, Interpolation, DifferenceMatrix);
 
 impl Multigrid {
     /// Sets the levels up. `weights[i]` is what row `i` counts for in sums over rows: the factor that turns the row
@@ -81,17 +88,16 @@ impl Multigrid {
             MatrixError::check_finite("weight", weights)?;
         }
         let rows = Arc::new(DifferenceMatrix::from_csr(&matrix)?);
-        Self::of(rows, weights, Scaling::default(), params)
+        let weights = weights.map_or_else(Arc::default, Arc::from);
+        Self::of(rows, Scaling { weights, ..Scaling::default() }, params)
     }
 
-    /// For rows in difference form, which the levels share with whoever has them. What it preconditions is the scaled matrix; the
-    /// weights are those of the rows before that.
+    /// For rows in difference form, which the levels share with whoever has them. What it preconditions is the scaled matrix.
     ///
     /// # Errors
     /// Those of [`Multigrid::new`].
     pub(crate) fn of(
         matrix: Arc<DifferenceMatrix>,
-        weights: Option<&[f64]>,
         scaling: Scaling,
         params: &MultigridParams,
     ) -> Result<Self, SolveError> {
@@ -103,7 +109,7 @@ impl Multigrid {
         multigrid.start(&a);
         let mut kept = multigrid.frame.kept(&a, params.keep);
         while a.n() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
-            let Some((p, r, coarse)) = multigrid.next_level(&a, weights, &mut kept)? else { break };
+            let Some((p, r, coarse)) = multigrid.next_level(&a, &mut kept)? else { break };
             a = multigrid.add_level(a, p, r, coarse)?;
         }
         multigrid.coarse = Coarse::new(&a, params.coarsest)?;
@@ -142,13 +148,12 @@ impl Multigrid {
     fn next_level(
         &self,
         a: &Arc<DifferenceMatrix>,
-        weights: Option<&[f64]>,
         kept: &mut Vec<bool>,
-    ) -> Result<Option<(Csr, Csr, DifferenceMatrix)>, SolveError> {
+    ) -> Result<Option<NextLevel>, SolveError> {
         let finest = self.levels.is_empty();
         let make = |kept: &mut Vec<bool>, step: Option<Step>| {
-            let units = self.frame.units().filter(|_| finest);
-            let weights = self.frame.weights(weights).filter(|_| finest);
+            let units = if finest { self.frame.units() } else { None };
+            let weights = if finest { self.frame.weights() } else { None };
             let transfers = transfers(a, units.as_deref(), weights.as_deref(), kept, &self.params, step)?;
             drop((units, weights));
             let Some((p, r)) = transfers else { return Ok(None) };
@@ -174,11 +179,17 @@ impl Multigrid {
     }
 
     /// The matrix of the level after the last.
-    fn coarse_matrix(&self, a: &DifferenceMatrix, p: &Csr, r: &Csr) -> Result<DifferenceMatrix, SolveError> {
+    fn coarse_matrix(
+        &self,
+        a: &DifferenceMatrix,
+        p: &Interpolation,
+        r: &Interpolation,
+    ) -> Result<DifferenceMatrix, SolveError> {
         let coarse = if self.levels.is_empty() {
-            galerkin::product(a, &self.frame.row_sums(a), self.frame.units().as_deref(), p, r)
+            let (units, weights) = (self.frame.units(), self.frame.weights());
+            galerkin::product(a, self.frame.row_sums(a), [units.as_deref(), weights.as_deref()], p, r)
         } else {
-            galerkin::product(a, a.row_sums(), None, p, r)
+            galerkin::product(a, a.row_sums().to_vec(), [None, None], p, r)
         };
         coarse.require_finite()?;
         Ok(coarse)
@@ -187,8 +198,8 @@ impl Multigrid {
     fn add_level(
         &mut self,
         a: Arc<DifferenceMatrix>,
-        p: Csr,
-        r: Csr,
+        p: Interpolation,
+        r: Interpolation,
         coarse: DifferenceMatrix,
     ) -> Result<Arc<DifferenceMatrix>, SolveError> {
         let smoother = match self.levels.len() {

@@ -1,6 +1,7 @@
 //! Prolongation and restriction between two levels.
 
 use super::aggregation::Aggregates;
+use super::interpolation::Interpolation;
 use super::params::{Coarsening, MultigridParams, ProlongationKind, Restriction, StrengthKind};
 use super::prolongation::{self, Step};
 use super::strength::{self, Graph};
@@ -12,9 +13,9 @@ use crate::solver::SolveError;
 /// A level that has more than this part of the unknowns of the one above is not worth having.
 const LEAST_COARSENING: f64 = 0.8;
 
-/// Prolongation and restriction to the next level; `None` where there is none that is worth having. Of a level that there is
-/// `kept` says which unknowns stay, before and after. Coarse unknowns of 1 are `units`, where these are not ones. Aggregates are
-/// smoothed by `step`, if there is one.
+/// Weights of prolongation and restriction to the next level; `None` where there is none that is worth having. Of a level that there
+/// is `kept` says which unknowns stay, before and after. Coarse unknowns of 1 are `units`, where these are not ones; rows count for
+/// `weights`. Aggregates are smoothed by `step`, if there is one.
 pub(super) fn transfers(
     a: &DifferenceMatrix,
     units: Option<&[f64]>,
@@ -22,7 +23,7 @@ pub(super) fn transfers(
     kept: &mut Vec<bool>,
     params: &MultigridParams,
     step: Option<Step>,
-) -> Result<Option<(Csr, Csr)>, SolveError> {
+) -> Result<Option<(Interpolation, Interpolation)>, SolveError> {
     let symmetric = strength::symmetric(a, units, params.threshold);
     let unit = |j: usize| units.map_or(1.0, |c| c[j]);
     let graph = match params.strength {
@@ -61,8 +62,9 @@ pub(super) fn transfers(
             (ruge_stueben::interpolation(&a, &dependence, &number, count, extended), None)
         }
     };
-    let r = restriction(left.as_ref().unwrap_or(&p), weights);
-    Ok(Some((in_units(p, units), r)))
+    let p = Interpolation::new(p);
+    let r = left.map_or_else(|| p.transposed(), |left| Interpolation::new(left).transposed());
+    Ok(Some((p, r)))
 }
 
 /// The smoothed prolongation, and the one of the transpose where the restriction is its own.
@@ -89,25 +91,4 @@ fn smoothed(
     };
     let left = if own { Some(of(&balances.transpose())?) } else { None };
     Ok((of(&balances)?, left))
-}
-
-/// The prolongation with its rows multiplied by what coarse unknowns of 1 are.
-fn in_units(p: Csr, units: Option<&[f64]>) -> Csr {
-    let Some(units) = units else { return p };
-    let ncols = p.ncols();
-    let (offsets, indices, mut values) = p.into_parts();
-    for (row, unit) in offsets.windows(2).zip(units) {
-        values[row[0]..row[1]].iter_mut().for_each(|v| *v *= unit);
-    }
-    Csr::from_trusted(ncols, offsets, indices, values)
-}
-
-/// The transpose of the prolongation, with its columns weighted.
-pub(super) fn restriction(p: &Csr, weights: Option<&[f64]>) -> Csr {
-    let r = p.transpose();
-    let Some(weights) = weights else { return r };
-    let ncols = r.ncols();
-    let (offsets, indices, mut values) = r.into_parts();
-    values.iter_mut().zip(&indices).for_each(|(v, &i)| *v *= weights[i as usize]);
-    Csr::from_trusted(ncols, offsets, indices, values)
 }

@@ -30,7 +30,7 @@ pub(crate) fn levels_of(params: &SolverParams) -> MultigridParams {
 pub(crate) struct Chain {
     rows: Arc<DifferenceMatrix>,
     /// What the rows are multiplied by.
-    factors: Vec<f64>,
+    factors: Arc<[f64]>,
     multigrid: Option<Multigrid>,
     /// Set once multigrid has failed.
     substitute: OnceLock<IncompleteLu>,
@@ -50,10 +50,11 @@ impl Chain {
         {
             return Err(SolveError::EmptyRow { row });
         }
-        let scaling = Scaling { rows: factors.clone(), unknowns: Vec::new() };
+        let factors: Arc<[f64]> = Arc::from(factors);
+        let scaling = Scaling { rows: Arc::clone(&factors), ..Scaling::default() };
         let (substitute, direct) = (OnceLock::new(), OnceLock::new());
         let mut chain = Self { rows, factors, multigrid: None, substitute, direct };
-        match Multigrid::of(Arc::clone(&chain.rows), None, scaling, &levels_of(params)) {
+        match Multigrid::of(Arc::clone(&chain.rows), scaling, &levels_of(params)) {
             Ok(multigrid) => chain.multigrid = Some(multigrid),
             // A coarsest level that cannot be factorised, or whose entries overflow.
             Err(SolveError::Singular { .. } | SolveError::Matrix(_)) => {
@@ -102,7 +103,7 @@ impl Chain {
         rhs: &[f64],
         params: &SolverParams,
     ) -> Result<(Vec<f64>, SolveInfo), SolveError> {
-        let b: Vec<f64> = rhs.iter().zip(&self.factors).map(|(b, f)| b * f).collect();
+        let b: Vec<f64> = rhs.iter().zip(&*self.factors).map(|(b, f)| b * f).collect();
         if let Some(factors) = self.direct.get() {
             return by_factors(factors, &b);
         }

@@ -12,81 +12,109 @@ const REORTHOGONALISE_BELOW: f64 = 0.717;
 /// A new direction shorter than this, relative to what was orthogonalised, is rounding: the space is exhausted.
 const EXHAUSTED: f64 = 1e-15;
 
+/// Vectors are kept in single precision once the residual is below this many targets: what rounding a vector adds in the end is 6e-8
+/// of the residual before the step that gave it (Simoncini and Szyld, SIAM J. Sci. Comput. 25, 2003, for inexact products).
+const SINGLE_BELOW: f64 = 2e5;
+
 /// One cycle of at most `restart` steps for `A d = r` from `d = 0`. `r` is overwritten.
 pub(crate) fn gmres_cycle(cycle: &mut Cycle<'_>, restart: usize, r: &mut [f64], d: &mut [f64]) -> CycleEnd {
-    let n = r.len();
     let beta = norm(r);
-    let mut basis = vec![scaled(r, 1.0 / beta)];
+    let mut basis = Vec::new();
     let mut triangle = Triangle::new(beta);
     let flexible = !cycle.m.is_linear();
     let mut directions = Vec::new();
-    let mut z = vec![0.0; n];
-    let mut end = CycleEnd::Restart;
-    while triangle.columns.len() < restart {
+    let mut w = r.to_vec();
+    let mut length = beta;
+    let (mut size, mut size_before) = (beta, f64::INFINITY);
+    let end = loop {
+        if triangle.columns.len() == restart {
+            break CycleEnd::Restart;
+        }
         if cycle.is_spent() {
-            end = CycleEnd::Budget;
-            break;
+            break CycleEnd::Budget;
         }
-        let mut w = vec![0.0; n];
+        basis.push(Kept::normalised(&mut w, length, size_before <= SINGLE_BELOW * cycle.target));
+        cycle.precondition(&w, r);
         if flexible {
-            cycle.precondition(&basis[basis.len() - 1], &mut z);
-            directions.push(rounded(&mut z));
-            cycle.multiply(&z, &mut w);
-        } else {
-            cycle.apply(&basis[basis.len() - 1], &mut z, &mut w);
+            directions.push(rounded(r));
         }
+        cycle.multiply(r, &mut w);
         let before = norm(&w);
         let mut column = orthogonalise(&basis, &mut w, before);
-        let length = norm(&w);
+        length = norm(&w);
         let exhausted = length.is_nan() || length <= EXHAUSTED * before;
         column.push(if exhausted { 0.0 } else { length });
-        let size = triangle.push(column);
+        size_before = std::mem::replace(&mut size, triangle.push(column));
         cycle.record(size);
         if size <= cycle.target {
-            end = CycleEnd::Claimed;
-            break;
+            break CycleEnd::Claimed;
         }
         if exhausted {
-            end = CycleEnd::BreakDown("the Krylov space is exhausted: the matrix seems singular");
-            break;
+            break CycleEnd::BreakDown("the Krylov space is exhausted: the matrix seems singular");
         }
-        basis.push(scaled(&w, 1.0 / length));
-    }
+    };
+    drop(w);
+    let combination = triangle.solve();
     if flexible {
-        for (y, direction) in triangle.solve().iter().zip(&directions) {
-            z.iter_mut().zip(direction).for_each(|(z, &x)| *z = f64::from(x));
-            axpy(*y, &z, d);
+        drop(basis);
+        for (y, direction) in combination.iter().zip(&directions) {
+            axpy(*y, direction, d);
         }
         return end;
     }
     r.fill(0.0);
-    for (y, v) in triangle.solve().iter().zip(&basis) {
-        axpy(*y, v, r);
-    }
+    combination.iter().zip(&basis).for_each(|(y, v)| v.add_to(*y, r));
+    drop(basis);
     cycle.precondition(r, d);
     end
 }
 
-/// Rounds a direction to single precision, in which it is kept: a preconditioner that changes from step to step may do that, too,
-/// as products are made with what is left.
+/// A vector of the basis.
+enum Kept {
+    Double(Vec<f64>),
+    Single(Vec<f32>),
+}
+
+impl Kept {
+    /// Makes `w` a vector of length 1, as it is kept.
+    fn normalised(w: &mut [f64], length: f64, single: bool) -> Self {
+        let factor = 1.0 / length;
+        w.iter_mut().for_each(|w| *w *= factor);
+        if single { Self::Single(rounded(w)) } else { Self::Double(w.to_vec()) }
+    }
+
+    fn dot(&self, w: &[f64]) -> f64 {
+        match self {
+            Self::Double(v) => dot(w, v),
+            Self::Single(v) => dot(w, v),
+        }
+    }
+
+    /// `y += alpha v`
+    fn add_to(&self, alpha: f64, y: &mut [f64]) {
+        match self {
+            Self::Double(v) => axpy(alpha, v, y),
+            Self::Single(v) => axpy(alpha, v, y),
+        }
+    }
+}
+
+/// Rounds a vector to single precision, in which it is kept. As for directions: a preconditioner that changes from step to step may do
+/// that, too, as products are made with what is left.
 fn rounded(z: &mut [f64]) -> Vec<f32> {
     let single = z.iter().map(|&z| z as f32).collect::<Vec<f32>>();
     z.iter_mut().zip(&single).for_each(|(z, &x)| *z = f64::from(x));
     single
 }
 
-fn scaled(x: &[f64], factor: f64) -> Vec<f64> {
-    x.iter().map(|x| x * factor).collect()
-}
-
 /// Removes the components of `w` along the basis and gives them.
-fn orthogonalise(basis: &[Vec<f64>], w: &mut [f64], before: f64) -> Vec<f64> {
+fn orthogonalise(basis: &[Kept], w: &mut [f64], before: f64) -> Vec<f64> {
     let mut column = vec![0.0; basis.len()];
     let mut length = before;
     for _pass in 0..2 {
         for (h, v) in column.iter_mut().zip(basis) {
-            let component = dot(w, v);
-            axpy(-component, v, w);
+            let component = v.dot(w);
+            v.add_to(-component, w);
             *h += component;
         }
         let shortened = norm(w);

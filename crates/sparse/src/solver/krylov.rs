@@ -160,7 +160,8 @@ pub(crate) fn iterate(
     if run.unit == 0.0 {
         return Ok((vec![0.0; b.len()], run.info(0.0, 0.0, Criterion::Residual, m)));
     }
-    let mut correction = vec![0.0; b.len()];
+    // The first correction is the solution so far: one vector less where one cycle is enough.
+    let mut further: Option<Vec<f64>> = None;
     let mut residual = b.to_vec();
     let (mut last_size, mut last_error) = (run.unit, f64::INFINITY);
     loop {
@@ -177,18 +178,22 @@ pub(crate) fn iterate(
             products: 0,
             attempt: run.without_gain,
         };
-        correction.fill(0.0);
+        if let Some(correction) = &mut further {
+            correction.fill(0.0);
+        }
+        let correction = further.as_deref_mut().unwrap_or(&mut run.x);
         let end = match method {
-            Method::BiCgStab { l } => bicgstab_cycle(&mut cycle, l, &mut residual, &mut correction),
-            Method::Gmres { restart } => gmres_cycle(&mut cycle, restart, &mut residual, &mut correction),
-            Method::Idr { s } => idr_cycle(&mut cycle, s, &mut residual, &mut correction),
-            Method::Cg => cg_cycle(&mut cycle, &mut residual, &mut correction),
+            Method::BiCgStab { l } => bicgstab_cycle(&mut cycle, l, &mut residual, correction),
+            Method::Gmres { restart } => gmres_cycle(&mut cycle, restart, &mut residual, correction),
+            Method::Idr { s } => idr_cycle(&mut cycle, s, &mut residual, correction),
+            Method::Cg => cg_cycle(&mut cycle, &mut residual, correction),
         };
         run.products += cycle.products;
-        axpy(1.0, &correction, &mut run.x);
+        if let Some(correction) = &further {
+            axpy(1.0, correction, &mut run.x);
+        }
         a.residual(&run.x, b, &mut residual);
         let size = norm(&residual);
-        run.keep_best(size);
         let gained = size <= LEAST_GAIN * last_size;
         // Above the tolerance it is asked for only where the residual stagnates.
         let error = if size <= met || !gained { a.backward_error(&run.x, b) } else { f64::INFINITY };
@@ -201,12 +206,14 @@ pub(crate) fn iterate(
             let info = run.info(size / run.unit, error, Criterion::RoundOff, m);
             return Ok((run.x, info));
         }
+        run.keep_best(size);
+        further.get_or_insert_with(|| vec![0.0; b.len()]);
         let error = if size <= met { error } else { f64::INFINITY };
         let gain = (size / last_size).min(if error < last_error { error / last_error } else { 1.0 });
         run.judge(end, gain, params)?;
         if !size.is_finite() || (size > last_size && size > met) {
             // A cycle that made it worse is undone before the next one.
-            run.x.clone_from(&run.best);
+            run.x = run.best();
             a.residual(&run.x, b, &mut residual);
         }
         (last_size, last_error) = (norm(&residual), error);
@@ -217,7 +224,8 @@ pub(crate) fn iterate(
 struct Run {
     name: String,
     x: Vec<f64>,
-    best: Vec<f64>,
+    /// The best solution so far; none as long as it is zero.
+    best: Option<Vec<f64>>,
     best_size: f64,
     /// Norm of the right-hand side.
     unit: f64,
@@ -233,7 +241,7 @@ impl Run {
         Self {
             name: format!("{} + {}", method.name(), m.name()),
             x: vec![0.0; b.len()],
-            best: vec![0.0; b.len()],
+            best: None,
             best_size: unit,
             unit,
             history: vec![1.0],
@@ -246,8 +254,12 @@ impl Run {
     fn keep_best(&mut self, size: f64) {
         if size < self.best_size {
             self.best_size = size;
-            self.best.clone_from(&self.x);
+            self.best = Some(self.x.clone());
         }
+    }
+
+    fn best(&self) -> Vec<f64> {
+        self.best.clone().unwrap_or_else(|| vec![0.0; self.x.len()])
     }
 
     /// Whether to go on after a cycle that did not meet the tolerance.
@@ -257,12 +269,12 @@ impl Run {
         let residual = self.best_size / self.unit;
         let hopeless = self.without_gain >= CYCLES_WITHOUT_GAIN;
         let spent = end == CycleEnd::Budget || self.products >= params.max_iterations;
-        let (solver, best, iterations) = (self.name.clone(), self.best.clone(), self.products);
-        if let (CycleEnd::BreakDown(what), true) = (end, hopeless) {
-            return Err(SolveError::BreakDown { solver, what, residual, iterations, best });
-        }
         if !hopeless && !spent {
             return Ok(());
+        }
+        let (solver, best, iterations) = (self.name.clone(), self.best(), self.products);
+        if let (CycleEnd::BreakDown(what), true) = (end, hopeless) {
+            return Err(SolveError::BreakDown { solver, what, residual, iterations, best });
         }
         let reason = if hopeless { "the residual stagnates" } else { "the limit of products" };
         let tolerance = params.tolerance;
