@@ -104,6 +104,20 @@ tolerance = 1e-3
     assert!((value - expected).abs() <= 2e-3 * expected, "{value} for {expected}");
 }
 
+/// In time an order above two is one that `sharp` has: fits of particle differences of that degree grow.
+#[test]
+fn an_order_with_a_tolerance_in_time_is_that_of_the_sharp_method() {
+    let text = kraus::interior(1e2, kraus::SUPPORT * 0.1, 1) + "\n[time]\nend = 1\n";
+    let method = |order: Option<usize>| {
+        let mut scene = with_tolerance(&text, 1e-4);
+        scene.method.order = order;
+        Plan::new(&scene).expect("a plan").method
+    };
+    assert_eq!(method(None).name, MethodName::ParticleDifference);
+    let sharp = method(Some(4));
+    assert_eq!((sharp.name, sharp.params.order()), (MethodName::Sharp, 4));
+}
+
 #[test]
 fn a_tolerance_out_of_reach_says_how_far_it_came() {
     let text = kraus::interior(1e4, kraus::SUPPORT * 0.1, 1);

@@ -159,3 +159,105 @@ fn level_sets_that_are_no_numbers_are_refused_where_they_are() {
     let text = text.replace("DOMAIN", half).replace("HOLE", "").replace("REGION", root);
     assert!(solve(&text, MethodName::Auto).is_ok());
 }
+
+/// Where nothing fixes the constant of u, probes have that of the nodes: current through a disc of three layers.
+#[test]
+fn probes_have_the_constant_of_the_nodes() {
+    let text = "title = \"Head\"\ndimension = 2\n[domain]\nsphere = { center = [0, 0], radius = 0.09 }\n\
+                [points]\nspacing = 0.003\n\
+                [[regions]]\nname = \"brain\"\nsphere = { center = [0, 0], radius = 0.08 }\ndiffusivity = 0.33\n\
+                [[regions]]\nname = \"skull\"\nsphere = { center = [0, 0], radius = 0.085 }\ndiffusivity = 0.0042\n\
+                [[regions]]\nname = \"scalp\"\ndiffusivity = 0.33\n\
+                [[boundaries]]\nface = \"outer\"\nflux = \"x/0.09\"\n\
+                [[probes]]\nat = [0.05, 0]\n[[probes]]\nat = [-0.05, 0]\n[[probes]]\nat = [0.0, 0.0]\n";
+    for method in [MethodName::Sharp, MethodName::GfdmHybrid] {
+        let report = solve(text, method).expect("it is solved");
+        let [a, b, c] = [0, 1, 2].map(|i| report.probes[i].value.expect("inside") / report.extrema.max);
+        assert!((a + b).abs() < 0.05 && c.abs() < 0.05 && a > 0.08, "{method:?}: {a:.3} {b:.3} {c:.3}");
+    }
+}
+
+/// What a condition, a hole or a `where` says must reach a node.
+#[test]
+fn conditions_that_no_node_gets_are_refused() {
+    let text = |boundaries: &str| {
+        format!(
+            "title = \"Electrodes\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [1, 1] }}\n\
+             [points]\nspacing = 0.1\n[[regions]]\nname = \"water\"\ndiffusivity = 1\n\
+             [[boundaries]]\nface = \"bottom\"\ndirichlet = 1\n{boundaries}\n\
+             [[boundaries]]\nface = \"all\"\nneumann = 0\n"
+        )
+    };
+    let electrode =
+        |place: &str| format!("[[boundaries]]\nface = \"top\"\nwhere = \"{place}\"\ndirichlet = 0\n");
+    let hole = "[[holes]]\nname = \"pipe\"\nsphere = { center = [3, 3], radius = 0.2 }\n";
+    let covered =
+        "[[boundaries]]\nface = \"all\"\ndirichlet = 2\n[[boundaries]]\nface = \"top\"\ndirichlet = 0\n";
+    for (boundaries, place, message) in [
+        (electrode("abs(x - 0.55) < 0.004"), "first.toml:13:", "no boundary node gets this condition"),
+        (electrode("x > 7"), "boundaries[1]", "no boundary node gets this condition"),
+        (covered.to_owned(), "boundaries[2]", "no boundary node gets this condition"),
+        (hole.to_owned(), "holes[0]", "no node lies on the surface of the hole \"pipe\""),
+        (electrode("log(x - 0.5) < 0"), "boundaries[1].where", "gives NaN at ["),
+    ] {
+        let error = solve(&text(&boundaries), MethodName::Auto).expect_err("it is not there").to_string();
+        assert!(error.contains(place) && error.contains(message), "{error}");
+    }
+    for fine in [electrode("abs(x - 0.55) < 0.1"), String::new()] {
+        let outcome = solve(&text(&fine), MethodName::Auto);
+        assert!(outcome.is_ok(), "{:?}", outcome.err());
+    }
+}
+
+#[test]
+fn sizes_beyond_arithmetic_are_refused_and_values_beyond_it_have_no_estimate() {
+    let text = |spacing: f64, u: f64| {
+        format!(
+            "title = \"Sizes\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [{0:e}, {0:e}] }}\n\
+             [points]\nspacing = {spacing:e}\n[[regions]]\nname = \"a\"\ndiffusivity = 1\n\
+             [[boundaries]]\nface = \"all\"\ndirichlet = {u:e}\n",
+            10.0 * spacing
+        )
+    };
+    for spacing in [1e-201, 1e149] {
+        let error = solve(&text(spacing, 1.0), MethodName::Auto).expect_err("no such lengths").to_string();
+        assert!(error.contains("points.spacing") && error.contains("another unit"), "{error}");
+    }
+    let report = solve(&text(1e-9, 1e300), MethodName::Auto).expect("it is solved");
+    assert_eq!(report.estimate.l2, None);
+    let words =
+        solve(&text(1e-9, 1.0).replace("1e-9\n", "\"1e-9 mm\"\n"), MethodName::Auto).expect_err("a unit");
+    assert!(words.to_string().contains("numbers have no units"), "{words}");
+}
+
+/// Stiff discs that touch each other, or a wall where u is prescribed: the estimate was up to twenty times too small.
+#[test]
+fn stiff_regions_that_touch_are_said_and_have_no_estimate() {
+    let text = |shape: &str, eta: f64, left: &str| {
+        format!(
+            "title = \"Touching\"\ndimension = 2\n[domain]\nbox = {{ min = [-1, -1], max = [1, 1] }}\n\
+             [points]\nspacing = 0.08\n[[regions]]\nname = \"discs\"\n{shape}\ndiffusivity = {eta}\n\
+             [[regions]]\nname = \"gap\"\ndiffusivity = 1\n[[boundaries]]\nface = \"left\"\n{left} = 0\n\
+             [[boundaries]]\nface = \"right\"\ndirichlet = 1\n[[boundaries]]\nface = \"all\"\nneumann = 0\n"
+        )
+    };
+    let pair = "union = [{ sphere = { center = [-0.4, 0], radius = 0.4 } }, { sphere = { center = [0.4, 0], radius = 0.4 } }]";
+    let wall = "sphere = { center = [-0.6, 0], radius = 0.4 }";
+    for (shape, other) in [(pair, "discs"), (wall, "boundary")] {
+        for method in [MethodName::Auto, MethodName::GfdmHybrid] {
+            let report = solve(&text(shape, 1e6, "dirichlet"), method).expect("it is solved");
+            assert_eq!(report.contacts.len(), 1, "{:?}", report.contacts);
+            assert!(report.contacts[0].between.contains(&other.to_owned()), "{:?}", report.contacts);
+            assert!(report.estimate.l2.is_none() && report.estimate.why_not.is_some());
+        }
+        let error =
+            solve(&(text(shape, 1e6, "dirichlet") + "[accuracy]\ntolerance = 1e-2\n"), MethodName::Auto);
+        let error = error.expect_err("no estimate").to_string();
+        assert!(error.contains("accuracy.tolerance") && error.contains("leave a gap"), "{error}");
+    }
+    // Nothing flows through the tip: insulators, a wall that insulates, and what is not much stiffer.
+    for (shape, eta, left) in [(pair, 1e-6, "dirichlet"), (wall, 1e6, "neumann"), (pair, 3.0, "dirichlet")] {
+        let report = solve(&text(shape, eta, left), MethodName::Auto).expect("it is solved");
+        assert!(report.contacts.is_empty() && report.estimate.l2.is_some(), "{:?}", report.contacts);
+    }
+}

@@ -24,6 +24,10 @@ const USAGE_ERROR: u8 = 2;
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (command, rest) = arguments.split_first().map_or(("", &[][..]), |(c, rest)| (c.as_str(), rest));
+    if rest.iter().any(|option| option == "--help" || option == "-h") {
+        print!("{USAGE}");
+        return ExitCode::SUCCESS;
+    }
     match command {
         "verify" => verify::run(rest),
         "bench" => bench::run(rest),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 use meshless::Overrides;
-use meshless::scene::Scene;
+use meshless::scene::{Given, Scene};
 
 use crate::Failure;
 
@@ -68,7 +68,12 @@ pub(crate) struct InsteadArgs {
 impl InsteadArgs {
     /// The scene of a file with these values in it.
     pub(crate) fn read(&self, file: &Path) -> Result<Scene, Failure> {
-        let mut scene = Scene::read(file).map_err(meshless::Error::from)?;
+        let given = match (&self.spacing, self.tolerance) {
+            (Some(_), _) => Given::Spacing,
+            (None, Some(_)) => Given::Tolerance,
+            (None, None) => Given::Nothing,
+        };
+        let mut scene = Scene::read_given(file, given).map_err(meshless::Error::from)?;
         let overrides = Overrides {
             method: self.method.as_deref(),
             order: self.order,

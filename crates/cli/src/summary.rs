@@ -34,6 +34,17 @@ fn system(report: &Report) {
             layer.resolving_spacing
         );
     }
+    if let Some(contact) = report.contacts.first() {
+        let more = match report.contacts.len() - 1 {
+            0 => String::new(),
+            more => format!(", and at {more} more places"),
+        };
+        let between = contact.between.join("\" and \"");
+        say!(
+            "contact     \"{between}\" touch near {:?}{more}: no spacing resolves the tip between them",
+            contact.at
+        );
+    }
     let nodes = &report.nodes;
     say!(
         "rows        {} stencils, {} cells, {} boundary stencils, {} prescribed",

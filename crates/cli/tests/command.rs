@@ -307,7 +307,15 @@ fn a_tolerance_takes_the_place_of_a_spacing() {
         let fixed = ["solve", scene.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
         meshless(&[&fixed, extra].concat())
     };
-    assert_eq!(solve(&[]).status.code(), Some(2), "neither spacing nor tolerance");
+    let neither = solve(&[]);
+    assert_eq!(neither.status.code(), Some(2), "neither spacing nor tolerance");
+    assert!(stderr(&neither).contains("or --tolerance"), "{}", stderr(&neither));
+    for given in [["--tolerance", "1e-6"], ["--spacing", "0.02"]] {
+        let output = solve(&given);
+        assert!(output.status.success(), "{given:?}: {}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(json["errors"]["l2"].as_f64().unwrap() < 1e-6, "{given:?}");
+    }
     let with = scene_in(folder.path(), &(text.clone() + "\n[accuracy]\ntolerance = 1e-6\n"));
     let output = meshless(&["solve", with.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
     assert!(output.status.success(), "{}", stderr(&output));
@@ -317,6 +325,10 @@ fn a_tolerance_takes_the_place_of_a_spacing() {
     let refused = meshless(&["solve", with.to_str().unwrap(), "--tolerance", "-1"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("above 0 and below 1"), "{}", stderr(&refused));
+    // What no arithmetic can do is not tried.
+    let refused = meshless(&["plan", with.to_str().unwrap(), "--tolerance", "1e-15"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("round-off alone leaves about 1.3e-14"), "{}", stderr(&refused));
 }
 
 #[test]

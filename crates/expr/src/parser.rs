@@ -61,7 +61,7 @@ pub(crate) fn parse(text: &str, variables: &[&str]) -> Result<Arc<Node>, ParseEr
         }
         (token @ (Token::Name(_) | Token::Number(_) | Token::Open), span) => {
             Err(ParseError::new(span, format!("expected an operator, found {token}"))
-                .with_help("a product is written with `*`"))
+                .with_help(parser.after_operand()))
         }
         (token @ Token::Operator(_), span) => {
             Err(ParseError::new(span, format!("expected the end, found {token}")))
@@ -70,6 +70,17 @@ pub(crate) fn parse(text: &str, variables: &[&str]) -> Result<Arc<Node>, ParseEr
 }
 
 impl<'a> Parser<'a> {
+    /// What to do where a value follows a value.
+    fn after_operand(&self) -> &'static str {
+        let unit = |before: &Token<'_>, this: &Token<'_>| matches!((before, this), (Token::Number(_), Token::Name(name)) if !self.variables.contains(name));
+        match self.next.checked_sub(1).map(|before| (&self.tokens[before].0, &self.tokens[self.next].0)) {
+            Some((before, this)) if unit(before, this) => {
+                "numbers have no units: write all of them in units that fit together; a product is written with `*`"
+            }
+            _ => "a product is written with `*`",
+        }
+    }
+
     fn peek(&self) -> (Token<'a>, Range<usize>) {
         self.tokens[self.next].clone()
     }

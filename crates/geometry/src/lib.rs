@@ -56,7 +56,7 @@ pub use error::GeometryError;
 pub use level_set::{GRADIENT_STEP, LevelSet, LevelSetFn};
 pub use newton::SURFACE_TOLERANCE;
 pub use projection::{Projection, ProjectionError};
-pub use region::{Component, GapParams, RegionGraph, RegionMap, RegionShape, TIE, ThinLayer};
+pub use region::{Component, Contact, GapParams, RegionGraph, RegionMap, RegionShape, TIE, ThinLayer};
 pub use shape::{Ball, Cylinder, HalfSpace, Polygon, Shape};
 pub use slit::{Sight, Slit, SlitFoot, SlitPoint};
 pub use surface::{DEFAULT_CREASE, MAX_STL_TRIANGLES, SurfaceParams, TriangleSurface, read_stl};

@@ -26,6 +26,9 @@ pub struct Report {
     /// another method, one that its nodes do not see.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thin_layer: Option<ThinLayerReport>,
+    /// Where stiff regions touch each other or a wall in a point; empty where none do.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<ContactReport>,
     /// Largest diffusivity of a node over the smallest.
     pub contrast: f64,
     /// What the scene calls for.
@@ -76,6 +79,17 @@ pub struct ThinLayerReport {
     /// Whether nodes on its two sides are kept apart. Where not, it is partly missing in what was solved, and no estimate of
     /// the error is given.
     pub seen: bool,
+}
+
+/// Stiff regions that touch without an angle: no spacing resolves the tip of the gap between them, and no estimate is given.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct ContactReport {
+    /// Where.
+    pub at: Vec<f64>,
+    /// Names of the regions that touch, or `boundary`.
+    pub between: Vec<String>,
+    /// Name of the region in the gap.
+    pub gap: String,
 }
 
 /// The time steps of an unsteady scene.

@@ -21,8 +21,10 @@ pub(crate) enum Effort {
 #[derive(Debug, Clone)]
 pub(crate) struct Options {
     pub(crate) suites: Vec<&'static Suite>,
-    pub(crate) case: Option<String>,
-    pub(crate) method: Option<String>,
+    /// The cases to run; all, where none is named.
+    pub(crate) cases: Vec<String>,
+    /// The methods to run; all, where none is named.
+    pub(crate) methods: Vec<String>,
     pub(crate) effort: Effort,
     pub(crate) threads: Option<usize>,
     pub(crate) out: PathBuf,
@@ -33,8 +35,8 @@ impl Options {
     pub(crate) fn parse(arguments: &[String]) -> Result<Self, String> {
         let mut options = Self {
             suites: Vec::new(),
-            case: None,
-            method: None,
+            cases: Vec::new(),
+            methods: Vec::new(),
             effort: Effort::Default,
             threads: None,
             out: workspace::root().join("target").join("verify"),
@@ -43,8 +45,8 @@ impl Options {
         while let Some(argument) = rest.next() {
             let mut value = || rest.next().cloned().ok_or_else(|| format!("`{argument}` needs a value"));
             match argument.as_str() {
-                "--case" => options.case = Some(value()?),
-                "--method" => options.method = Some(value()?),
+                "--case" => options.cases.push(value()?),
+                "--method" => options.methods.push(value()?),
                 "--threads" => options.threads = Some(positive(argument, &value()?)?),
                 "--out" => options.out = PathBuf::from(value()?),
                 "--quick" => options.set_effort(Effort::Quick)?,
@@ -66,12 +68,17 @@ impl Options {
 
     /// Whether rows are left out, so that claims may have nothing to rest on.
     pub(crate) fn is_filtered(&self) -> bool {
-        self.case.is_some() || self.method.is_some()
+        !self.cases.is_empty() || !self.methods.is_empty()
     }
 
     /// Whether a run is asked for.
     pub(crate) fn wants(&self, case: &str, method: &str) -> bool {
-        self.case.as_deref().is_none_or(|c| c == case) && self.method.as_deref().is_none_or(|m| m == method)
+        self.wants_case(case) && (self.methods.is_empty() || self.methods.iter().any(|m| m == method))
+    }
+
+    /// Whether a case is asked for.
+    pub(crate) fn wants_case(&self, case: &str) -> bool {
+        self.cases.is_empty() || self.cases.iter().any(|c| c == case)
     }
 
     fn set_effort(&mut self, effort: Effort) -> Result<(), String> {
@@ -83,12 +90,8 @@ impl Options {
     }
 
     fn check_names(&self) -> Result<(), String> {
-        known("case", self.case.as_deref(), self.suites.iter().flat_map(|s| s.cases.iter().copied()))?;
-        known(
-            "method",
-            self.method.as_deref(),
-            iter::once("auto").chain(meshless::METHODS.iter().map(|m| m.name)),
-        )
+        known("case", &self.cases, self.suites.iter().flat_map(|s| s.cases.iter().copied()))?;
+        known("method", &self.methods, iter::once("auto").chain(meshless::METHODS.iter().map(|m| m.name)))
     }
 }
 
@@ -99,13 +102,11 @@ fn positive(option: &str, text: &str) -> Result<usize, String> {
     }
 }
 
-fn known<'a>(what: &str, name: Option<&str>, names: impl Iterator<Item = &'a str>) -> Result<(), String> {
+fn known<'a>(what: &str, given: &[String], names: impl Iterator<Item = &'a str>) -> Result<(), String> {
     let names: Vec<&str> = names.collect();
-    match name {
-        Some(name) if !names.contains(&name) => {
-            Err(format!("unknown {what} `{name}`; there are {}", names.join(", ")))
-        }
-        _ => Ok(()),
+    match given.iter().find(|name| !names.contains(&name.as_str())) {
+        Some(name) => Err(format!("unknown {what} `{name}`; there are {}", names.join(", "))),
+        None => Ok(()),
     }
 }
 
@@ -126,10 +127,19 @@ mod tests {
     }
 
     #[test]
+    fn cases_and_methods_may_be_given_several_times() -> Result<(), String> {
+        let options = parse("hard --case contrast --case seeds --method auto")?;
+        assert!(options.wants("contrast", "auto") && options.wants("seeds", "auto"));
+        assert!(!options.wants("thin-gap", "auto") && !options.wants("seeds", "sharp"));
+        Ok(())
+    }
+
+    #[test]
     fn mistakes_name_what_is_known() {
         let error = |line: &str| parse(line).err().unwrap_or_default();
         assert!(error("gdfm").contains("gfdm"));
         assert!(error("--case outerior").contains("interior"));
+        assert!(error("gfdm --case interior --case torus").contains("`torus`"));
         assert!(error("--method none").contains("gfdm-hybrid"));
         assert!(error("--threads 0").contains("positive"));
         assert!(error("--quick --full").contains("exclude"));

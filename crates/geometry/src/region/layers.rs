@@ -7,7 +7,7 @@ use crate::projection::Projection;
 use crate::vector::{axpy, dot, norm, normalized};
 
 /// How far beside an interface the regions on its two sides are read, in spacings.
-const BESIDE: f64 = 1e-5;
+pub(super) const BESIDE: f64 = 1e-5;
 
 /// Thickness in spacings below which a strip along the boundary of the domain is none: a surface that runs along it.
 const ALONG: f64 = 3.0 * BESIDE;
@@ -17,7 +17,7 @@ const STEP: f64 = 0.05;
 const HALVINGS: usize = 16;
 
 /// Thickness in spacings below which two interfaces touch.
-const CONTACT: f64 = 1e-4;
+pub(super) const CONTACT: f64 = 1e-4;
 
 /// Steps towards where a layer is thinnest or thickest, how often each is halved until it is thinner or thicker there, and by
 /// how much it must be. Towards a contact of smooth surfaces the thickness falls to a quarter by each, in a wedge to a half.
@@ -81,6 +81,26 @@ impl<const D: usize> RegionMap<D> {
         domain: &Domain<D>,
         least: f64,
     ) -> Vec<ThinLayer<D>> {
+        let ways = self.ways_near(x, spacing, domain, least).into_iter();
+        let layers = ways.filter(|(across, way)| !self.is_in_a_tip(across, way));
+        layers
+            .map(|(_, way)| ThinLayer {
+                at: way.middle(),
+                thickness: way.length,
+                spacing,
+                region: way.region,
+            })
+            .collect()
+    }
+
+    /// The ways through what is thin near a point, layers and tips.
+    pub(super) fn ways_near<'a>(
+        &self,
+        x: &[f64; D],
+        spacing: f64,
+        domain: &'a Domain<D>,
+        least: f64,
+    ) -> Vec<(Across<'a, D>, Way<D>)> {
         let reach = least * spacing;
         let mut found = Vec::new();
         for label in 0..self.len() as u16 - 1 {
@@ -91,13 +111,8 @@ impl<const D: usize> RegionMap<D> {
             let Ok(foot) = shape.project(x, reach) else { continue };
             for sign in [-1.0, 1.0] {
                 let across = Across { domain, surface: label, sign, spacing, least };
-                let way = self.way(&across, &foot).filter(|way| !self.is_in_a_tip(&across, way));
-                found.extend(way.map(|way| ThinLayer {
-                    at: way.middle(),
-                    thickness: way.length,
-                    spacing,
-                    region: way.region,
-                }));
+                let way = self.way(&across, &foot);
+                found.extend(way.map(|way| (across, way)));
             }
         }
         found
@@ -142,16 +157,20 @@ impl<const D: usize> RegionMap<D> {
     /// Whether a way leads through a tip: thinner and thinner to one side until the two surfaces touch, where no spacing resolves
     /// what is between them, and to the other side as thick as is asked for.
     fn is_in_a_tip(&self, across: &Across<'_, D>, way: &Way<D>) -> bool {
+        self.contact(across, way).is_some() && self.grows_thick(across, way)
+    }
+
+    /// The way beside where the two surfaces touch, to which ways that are thinner and thinner lead.
+    pub(super) fn contact(&self, across: &Across<'_, D>, way: &Way<D>) -> Option<Way<D>> {
         let mut thin = *way;
-        let contact = (0..DESCENTS).any(|_| {
+        (0..DESCENTS).find_map(|_| {
             thin = self.thinner(across, &thin).unwrap_or(thin);
-            thin.length < CONTACT * across.spacing
-        });
-        contact && self.grows_thick(across, way)
+            (thin.length < CONTACT * across.spacing).then_some(thin)
+        })
     }
 
     /// Whether a layer is as thick as is asked for where the way to where it is thicker leads.
-    fn grows_thick(&self, across: &Across<'_, D>, way: &Way<D>) -> bool {
+    pub(super) fn grows_thick(&self, across: &Across<'_, D>, way: &Way<D>) -> bool {
         let Some(shape) = self.shape(across.surface) else { return false };
         let mut way = *way;
         for _ in 0..DESCENTS {
@@ -196,30 +215,31 @@ impl<const D: usize> RegionMap<D> {
 }
 
 /// From which side of which surface a layer is looked through, and how far.
-struct Across<'a, const D: usize> {
-    domain: &'a Domain<D>,
+#[derive(Clone, Copy)]
+pub(super) struct Across<'a, const D: usize> {
+    pub(super) domain: &'a Domain<D>,
     surface: u16,
     /// 1 along the normal of the surface, -1 against it.
     sign: f64,
-    spacing: f64,
+    pub(super) spacing: f64,
     /// In spacings.
     least: f64,
 }
 
 /// A way through a layer.
 #[derive(Clone, Copy)]
-struct Way<const D: usize> {
-    from: [f64; D],
-    direction: [f64; D],
-    length: f64,
+pub(super) struct Way<const D: usize> {
+    pub(super) from: [f64; D],
+    pub(super) direction: [f64; D],
+    pub(super) length: f64,
     /// The normal out of the layer where it ends.
     facing: [f64; D],
     /// What the layer is of.
-    region: u16,
+    pub(super) region: u16,
 }
 
 impl<const D: usize> Way<D> {
-    fn middle(&self) -> [f64; D] {
+    pub(super) fn middle(&self) -> [f64; D] {
         axpy(&self.from, 0.5 * self.length, &self.direction)
     }
 
@@ -229,7 +249,7 @@ impl<const D: usize> Way<D> {
     }
 
     /// By how much it does on the way there, over the length of that way.
-    fn slope(&self) -> f64 {
+    pub(super) fn slope(&self) -> f64 {
         norm(&self.thinner()) / dot(&self.facing, &self.direction)
     }
 }

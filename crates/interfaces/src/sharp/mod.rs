@@ -124,7 +124,15 @@ impl<const D: usize> Method<D> for Sharp {
         points: &[[f64; D]],
     ) -> Result<Option<Vec<Option<Sample<D>>>>, MethodError> {
         let values = Values::new(solution);
-        self.with_maker(problem, |maker| Ok(Some(maker.samples(points, &values))))
+        self.with_maker(problem, |maker| {
+            let mut samples = maker.samples(points, &values);
+            if solution.up_to_constant {
+                // What was solved for has another constant than what was made of it.
+                let level = maker.level(&solution.u, &values);
+                samples.iter_mut().flatten().for_each(|sample| sample.value += level);
+            }
+            Ok(Some(samples))
+        })
     }
 }
 

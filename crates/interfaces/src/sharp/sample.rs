@@ -44,6 +44,14 @@ impl<const D: usize> Maker<'_, D> {
         self.unknowns.offset[part as usize] + self.constants(part, None, values)
     }
 
+    /// The constant by which nodal values differ from the unknowns that they are made of, where nothing fixes it and it was
+    /// chosen afterwards.
+    pub(super) fn level(&self, u: &[f64], values: &Values<'_>) -> f64 {
+        let own =
+            |(&part, w): (&u32, &f64)| self.unknowns.scale[part as usize] * w + self.constant(part, values);
+        self.unknowns.part.iter().zip(values.w).map(own).zip(u).next().map_or(0.0, |(own, u)| u - own)
+    }
+
     /// The gradient of the own polynomial at node i.
     pub(super) fn gradient(
         &self,

@@ -55,6 +55,53 @@ impl<const D: usize> Boundary<D> {
         })
     }
 
+    /// The `where` of every entry for a face must be a number.
+    fn check_places(&self, scene: &Scene, face: FaceId, x: &[f64; D]) -> Result<(), Error> {
+        for (entry, spec) in self.entries.iter().zip(&scene.boundaries) {
+            if let (Some(place), Some(where_)) = (&entry.place, &spec.where_)
+                && entry.face.is_none_or(|f| f == face)
+                && place.at(x).is_nan()
+            {
+                return Err(not_finite(scene, where_, f64::NAN, x));
+            }
+        }
+        Ok(())
+    }
+
+    /// Every entry must be the condition of a node, but those that catch what others leave; every hole must have nodes.
+    ///
+    /// # Errors
+    /// What no node hears of: an electrode narrower than the spacing, a part that an entry before covers, a `where` or a hole that
+    /// is elsewhere.
+    pub(crate) fn check_is_met(&self, scene: &Scene, cloud: &Cloud<D>) -> Result<(), Error> {
+        let mut met = vec![false; self.entries.len()];
+        let mut faces = vec![false; scene.faces().len()];
+        for node in cloud.boundary() {
+            let x = &cloud.points()[node.node as usize];
+            for touch in &node.touches {
+                faces[touch.face.0 as usize] = true;
+                if let Some(index) = self.entry(touch.face, x) {
+                    met[index] = true;
+                }
+            }
+        }
+        let outer = faces.len() - scene.holes.len();
+        if let Some(hole) = scene.holes.iter().zip(&faces[outer..]).find_map(|(h, &met)| (!met).then_some(h))
+        {
+            let message = format!("no node lies on the surface of the hole \"{}\"", hole.name);
+            let help = "it is outside of the domain, or smaller than the spacing: remove it, move it, or use a smaller \
+                        spacing";
+            return Err(Error::TooCoarse(Box::new(hole.place.error(message, help))));
+        }
+        let catches = |spec: &BoundarySpec| spec.face == "all" && spec.where_.is_none();
+        let idle = scene.boundaries.iter().zip(&met).find(|&(spec, &met)| !met && !catches(spec));
+        let Some((spec, _)) = idle else { return Ok(()) };
+        let message = "no boundary node gets this condition";
+        let help = "the entries before it cover all of it, its `where` is nowhere true, or it is narrower than the \
+                    spacing: put it first, correct it, or use a smaller spacing there";
+        Err(Error::TooCoarse(Box::new(spec.place.error(message, help))))
+    }
+
     /// The conditions of every boundary node, one for each of its faces, checked.
     pub(crate) fn at_nodes(&self, scene: &Scene, cloud: &Cloud<D>) -> Result<Vec<Vec<Condition>>, Error> {
         let mut all = Vec::with_capacity(cloud.boundary().len());
@@ -62,6 +109,7 @@ impl<const D: usize> Boundary<D> {
             let x = &cloud.points()[node.node as usize];
             let mut conditions = Vec::with_capacity(node.touches.len());
             for touch in &node.touches {
+                self.check_places(scene, touch.face, x)?;
                 let index = self
                     .entry(touch.face, x)
                     .ok_or_else(|| missing_condition(scene, cloud, node.node as usize, x))?;

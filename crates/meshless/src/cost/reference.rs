@@ -3,7 +3,7 @@
 use meshless_interfaces::{Sample, Sampler};
 
 use super::candidates::Candidate;
-use crate::execute::{Silent, Solved, estimate, solve_in, thin_layer};
+use crate::execute::{Silent, Solved, Unresolved, contacts, estimate, solve_in, thin_layer};
 use crate::norms::ErrorNorms;
 use crate::plan::{Effect, Plan, Stage};
 use crate::scene::{MethodName, Scene};
@@ -127,7 +127,9 @@ impl<const D: usize> Finest<D> {
         let plan = Plan::new(&scene)?;
         let solved = solve_in::<D>(&scene, &plan.companion(), None, &mut Silent)?;
         let thin_layer = thin_layer(&scene, &plan, &solved.discrete.problem())?;
-        let own_error = estimate(&scene, &plan, &solved, thin_layer.as_ref())?.0.l2;
+        let contacts = contacts(&scene, &solved.discrete.problem());
+        let unresolved = Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts };
+        let own_error = estimate(&scene, &plan, &solved, &unresolved)?.0.l2;
         Ok(Self { solved, plan, own_error })
     }
 

@@ -103,6 +103,7 @@ impl<const D: usize> Discrete<D> {
             .transpose()?;
         let boundary = Boundary::new(scene, &domain);
         let conditions = boundary.at_nodes(scene, &cloud)?;
+        boundary.check_is_met(scene, &cloud)?;
         let (jumps, jump_rates) = (build::jumps::<D>(scene), build::jump_rates::<D>(scene));
         let slits = build::slits(scene, &domain)?;
         seconds.stencils = start.elapsed().as_secs_f64();

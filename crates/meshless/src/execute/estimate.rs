@@ -8,7 +8,7 @@
 //! A method that has a higher degree of itself on the same cloud is compared with that instead: the difference is the error but for
 //! that of the higher degree.
 //!
-//! Where the nodes do not see a layer no comparison of theirs does, and there is no estimate.
+//! Where the nodes do not see a layer, or stiff regions touch in a point, no comparison of theirs does, and there is no estimate.
 
 use meshless_interfaces::{Sampler, SystemParams, solve};
 use rayon::prelude::*;
@@ -16,12 +16,42 @@ use rayon::prelude::*;
 use super::{Silent, Solved, solve_in};
 use crate::norms::ErrorNorms;
 use crate::plan::{MethodParams, Plan, Stage};
-use crate::report::{Estimate, ThinLayerReport};
+use crate::report::{ContactReport, Estimate, ThinLayerReport};
 use crate::scene::Scene;
 use crate::{Error, build};
 
 /// Spacing of the coarser cloud over that of the finer one.
 const RATIO: f64 = 2.0;
+
+/// What no comparison of clouds or orders tells of.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Unresolved<'a> {
+    /// A layer that is thin for the nodes.
+    pub(crate) thin_layer: Option<&'a ThinLayerReport>,
+    /// Places where stiff regions touch.
+    pub(crate) contacts: &'a [ContactReport],
+}
+
+impl Unresolved<'_> {
+    /// Why there is no estimate; `None` where there is one.
+    fn why_not(&self) -> Option<String> {
+        let layer = self.thin_layer.filter(|layer| !layer.seen);
+        let layer =
+            layer.map(|l| format!("nodes on both sides of a layer of \"{}\" do not see it", l.region));
+        layer.or_else(|| self.contacts.first().map(ContactReport::why_not))
+    }
+}
+
+impl ContactReport {
+    /// Why there is no estimate.
+    fn why_not(&self) -> String {
+        let between = self.between.join("\" and \"");
+        format!(
+            "\"{between}\" touch near {:?}, and the tip between them is not resolved by any spacing",
+            self.at
+        )
+    }
+}
 
 /// The estimate of a method's own choice, and where the method is compared with itself on the same cloud, `u` minus the finer
 /// solution at every node.
@@ -29,16 +59,20 @@ pub(crate) fn estimate<const D: usize>(
     scene: &Scene,
     plan: &Plan,
     solved: &Solved<D>,
-    thin_layer: Option<&ThinLayerReport>,
+    unresolved: &Unresolved<'_>,
 ) -> Result<(Estimate, Option<Vec<f64>>), Error> {
-    if let Some(layer) = thin_layer.filter(|layer| !layer.seen) {
-        let why_not = format!("nodes on both sides of a layer of \"{}\" do not see it", layer.region);
+    if let Some(why_not) = unresolved.why_not() {
         return Ok((Estimate { l2: None, why_not: Some(why_not) }, None));
     }
-    match plan.finer() {
-        Some(finer) => against_finer(scene, plan, &finer, solved),
-        None => Ok((against_coarser(scene, plan, solved)?, None)),
+    let (estimate, differences) = match plan.finer() {
+        Some(finer) => against_finer(scene, plan, &finer, solved)?,
+        None => (against_coarser(scene, plan, solved)?, None),
+    };
+    if estimate.l2.is_some_and(|l2| !l2.is_finite()) {
+        let why_not = "the squares of u are beyond double precision: take other units".to_owned();
+        return Ok((Estimate { l2: None, why_not: Some(why_not) }, differences));
     }
+    Ok((estimate, differences))
 }
 
 fn against_finer<const D: usize>(

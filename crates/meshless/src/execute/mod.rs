@@ -1,5 +1,6 @@
 //! From a plan to a solution, stage by stage; what the plan skips is not built.
 
+mod contacts;
 mod discrete;
 mod estimate;
 mod free_space;
@@ -22,8 +23,9 @@ use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
 use crate::{Error, NodalField, ParticleField};
+pub(crate) use contacts::contacts;
 pub(crate) use discrete::{Discrete, Exact};
-pub(crate) use estimate::estimate;
+pub(crate) use estimate::{Unresolved, estimate};
 pub use linear::{PseudoTimeCost, linear_system, pseudo_time};
 pub use picture::Picture;
 pub use reproduce::{Reproduction, reproduce};
@@ -223,8 +225,9 @@ fn execute_in<const D: usize>(
     progress.stage(Stage::Estimate);
     let before = Instant::now();
     let thin_layer = thin_layer(scene, plan, &problem)?;
+    let contacts = contacts(scene, &problem);
     let (estimate, differences) = if plan.runs(Stage::Estimate) {
-        estimate(whole, plan, &solved, thin_layer.as_ref())?
+        estimate(whole, plan, &solved, &Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts })?
     } else {
         (Estimate { l2: None, why_not: Some("not asked for".to_owned()) }, None)
     };
@@ -237,7 +240,7 @@ fn execute_in<const D: usize>(
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    let report = Report { fallback, thin_layer, ..report };
+    let report = Report { fallback, thin_layer, contacts, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames, particles: None })
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use super::{Checkpoint, Progress, Solution, execute_once};
 use crate::plan::{AccuracyPlan, Plan};
-use crate::report::{AccuracyReport, Rung, ThinLayerReport};
+use crate::report::{AccuracyReport, ContactReport, Rung, ThinLayerReport};
 use crate::scene::Scene;
 use crate::{Error, build};
 
@@ -65,6 +65,9 @@ pub(super) fn refine(
         let (estimate, rung, solution) = match execute_once(&rung_scene, &rung_plan, None, progress) {
             Ok(solution) => {
                 let report = &solution.report;
+                if let (Some(contact), None) = (report.contacts.first(), report.estimate.l2) {
+                    return Err(at_contact(scene, goal, contact));
+                }
                 let estimate = report.estimate.l2;
                 thin = report.thin_layer.clone();
                 let why = report.estimate.why_not.clone();
@@ -154,6 +157,19 @@ fn unmet(
         }
     };
     located(scene, message, &help)
+}
+
+/// A contact that no cloud resolves.
+fn at_contact(scene: &Scene, goal: AccuracyPlan, contact: &ContactReport) -> Error {
+    let message = format!(
+        "a relative error of {:.1e} cannot be told to be reached: \"{}\" touch near {:?}, where it falls with the root of \
+         the spacing only, and no estimate sees it",
+        goal.tolerance,
+        contact.between.join("\" and \""),
+        contact.at
+    );
+    let help = "leave a gap between them, or let them overlap; or give a spacing instead, and compare with smaller ones";
+    located(scene, message, help)
 }
 
 fn located(scene: &Scene, message: String, help: &str) -> Error {

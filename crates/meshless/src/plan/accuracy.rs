@@ -1,5 +1,7 @@
 //! Decisions where a scene gives an error to reach.
 
+use meshless_interfaces::sharp::Sharp;
+
 use super::effects::Survey;
 use crate::scene::{MethodName, Scene};
 
@@ -54,6 +56,10 @@ impl AccuracyPlan {
         if scene.time.is_none() {
             let order = self.order_of(SHARP_ORDERS[scene.dimension - 1]);
             return choice(MethodName::Sharp, order, "high order on both sides of interfaces");
+        }
+        if jumps && scene.method.order.is_some_and(|order| order > 2 && Sharp::offers(order, scene.dimension))
+        {
+            return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");
         }
         if jumps {
             let why = "second order up to interfaces, also in time";

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use meshless_interfaces::thin_layers;
 
+use super::Given;
 use super::accuracy::{AccuracySpec, first_spacing};
 use super::error::SceneError;
 use super::expression::ExprField;
@@ -45,14 +46,26 @@ pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     Ok(DomainSpec { shape, bounds, place: table.place })
 }
 
-/// What to do where nothing says how far apart the nodes are. `--tolerance` takes the place of what the scene has.
-const NO_SPACING: &str = "give `spacing` in [points], or the error to reach: [accuracy] with `tolerance`";
+/// What to do where nothing says how far apart the nodes are.
+const NO_SPACING: &str =
+    "give `spacing` in [points], or the error to reach: [accuracy] with `tolerance`, or --tolerance";
 
-/// With `[accuracy]` the spacing, or all of `[points]`, may be absent.
+/// The same where an error is given, and the size of the domain is not known before its file is read.
+const NO_SIZE: &str =
+    "a tolerance begins at a spacing, and the size of this domain is not known: give one in [points]";
+
+/// Spacings whose volumes, and stencils of which, are far from the ends of double precision.
+const LENGTHS: (f64, f64) = (1e-60, 1e60);
+
+/// The spacing that stands in for one that is put in afterwards.
+const STAND_IN: f64 = 1.0;
+
+/// With `[accuracy]`, or where the spacing or an error is given elsewhere, the spacing, or all of `[points]`, may be absent.
 pub(super) fn points(
     root: &Table<'_>,
     domain: &DomainSpec,
     accuracy: Option<&AccuracySpec>,
+    given: Given,
 ) -> Result<PointsSpec, SceneError> {
     const LAYOUTS: [(&str, LayoutName); 4] = [
         ("grid", LayoutName::Grid),
@@ -60,7 +73,14 @@ pub(super) fn points(
         ("scattered", LayoutName::Scattered),
         ("irregular", LayoutName::Irregular),
     ];
-    let first = || accuracy.and_then(|spec| Some((first_spacing(domain, root.dimension)?, &spec.place)));
+    let place = accuracy.map_or(&domain.place, |spec| &spec.place);
+    let refined = accuracy.is_some() || given == Given::Tolerance;
+    let first = || match first_spacing(domain, root.dimension) {
+        Some(spacing) if refined || given == Given::Spacing => Some((spacing, place)),
+        None if given == Given::Spacing => Some((STAND_IN, place)),
+        _ => None,
+    };
+    let help = if refined { NO_SIZE } else { NO_SPACING };
     let Some(table) = root.get("points").map(Value::table).transpose()? else {
         return match first() {
             Some((spacing, place)) => Ok(PointsSpec {
@@ -71,7 +91,7 @@ pub(super) fn points(
                 gaps: None,
                 place: place.clone(),
             }),
-            None => Err(root.missing("points", NO_SPACING)),
+            None => Err(root.missing("points", help)),
         };
     };
     table.allow(&["spacing", "layout", "seed", "file", GAPS])?;
@@ -86,9 +106,9 @@ pub(super) fn points(
         file: None,
         gaps: gaps(&table, layout, is_open(root))?,
         spacing: match (table.get("spacing"), first()) {
-            (Some(value), _) => value.expression()?.check_positive()?,
+            (Some(value), _) => in_range(value.expression()?.check_positive()?)?,
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
-            (None, None) => return Err(table.missing("spacing", NO_SPACING)),
+            (None, None) => return Err(table.missing("spacing", help)),
         },
         layout,
         seed: match table.get("seed") {
@@ -97,6 +117,18 @@ pub(super) fn points(
         },
         place: table.place,
     })
+}
+
+/// A spacing whose powers are numbers, if it is constant.
+fn in_range(spacing: ExprField) -> Result<ExprField, SceneError> {
+    match spacing.expr.as_constant() {
+        Some(h) if !(LENGTHS.0..=LENGTHS.1).contains(&h) => {
+            let message =
+                format!("lengths from {:e} to {:e} can be computed with, found {h:e}", LENGTHS.0, LENGTHS.1);
+            Err(spacing.place.error(message, "take another unit of length"))
+        }
+        _ => Ok(spacing),
+    }
 }
 
 /// How far gaps are refined.

@@ -54,6 +54,18 @@ pub(crate) use time::Varying;
 
 use source::Source;
 
+/// What is said elsewhere than in the file about how far apart nodes are, so that the file need not say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Given {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// A spacing, which takes the place of what is in the scene that is read.
+    Spacing,
+    /// An error to reach, which refines what is in the scene that is read.
+    Tolerance,
+}
+
 /// A scene file as data; every invariant that can be checked without evaluating a field holds.
 #[derive(Debug, Clone)]
 pub struct Scene {
@@ -99,7 +111,7 @@ impl Scene {
     /// The first thing that is wrong with the text: syntax, an unknown, missing or contradictory key, a wrong type,
     /// a value out of its range, or an expression that does not parse.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
-        root::scene(&Arc::new(Source::new(file_name, text)))
+        root::scene(&Arc::new(Source::new(file_name, text)), Given::Nothing)
     }
 
     /// Reads a scene file.
@@ -108,8 +120,18 @@ impl Scene {
     ///
     /// As [`Scene::parse`]; also where the file cannot be read, is not UTF-8, or is longer than [`MAX_FILE_BYTES`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::read_given(path, Given::Nothing)
+    }
+
+    /// The same where the spacing, or an error to reach, is given elsewhere: `[points]` may then be absent, and
+    /// [`Overrides`](crate::Overrides) put it in.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::read`].
+    pub fn read_given(path: impl AsRef<Path>, given: Given) -> Result<Self, SceneError> {
         let source = Source::read(path.as_ref())?;
-        root::scene(&Arc::new(source))
+        root::scene(&Arc::new(source), given)
     }
 
     /// An error about an expression of this scene, found while evaluating it.

@@ -8,7 +8,7 @@ use super::error::SceneError;
 use super::reader::Table;
 use super::source::{MAX_FILE_BYTES, Place, Source};
 use super::spec::OutputSpec;
-use super::{Scene, accuracy, boundaries, domain, free_space, method, regions, slits, time};
+use super::{Given, Scene, accuracy, boundaries, domain, free_space, method, regions, slits, time};
 
 const KEYS: [&str; 15] = [
     "title",
@@ -28,7 +28,7 @@ const KEYS: [&str; 15] = [
     "output",
 ];
 
-pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
+pub(super) fn scene(source: &Arc<Source>, given: Given) -> Result<Scene, SceneError> {
     if source.text.len() > MAX_FILE_BYTES {
         return Err(source.too_long(source.text.len() as u64));
     }
@@ -41,7 +41,7 @@ pub(super) fn scene(source: &Arc<Source>) -> Result<Scene, SceneError> {
     let root = root.with_dimension(dimension).with_time(unsteady);
     let domain = domain::domain(&root)?;
     let accuracy = accuracy::accuracy(&root)?;
-    let points = domain::points(&root, &domain, accuracy.as_ref())?;
+    let points = domain::points(&root, &domain, accuracy.as_ref(), given)?;
     let holes = domain::holes(&root)?;
     let regions = regions::regions(&root)?;
     Ok(Scene {

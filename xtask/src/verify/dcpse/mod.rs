@@ -53,7 +53,7 @@ pub(super) fn run(options: &Options) -> Study {
     for outcome in runner.outcomes.iter_mut().filter(|o| o.key.case == "inclusions") {
         outcome.row.err_l2 = at_reference(outcome);
     }
-    if options.case.as_deref().is_none_or(|c| c == "operators") && options.method.is_none() {
+    if options.wants_case("operators") && options.methods.is_empty() {
         operators::check(&mut claims);
     }
     let mut stepped = Vec::new();

@@ -28,7 +28,7 @@ pub(super) fn sections(runner: &Runner<'_>) -> Vec<Section> {
     ];
     about
         .into_iter()
-        .filter(|(case, ..)| runner.options.case.as_deref().is_none_or(|c| c == *case))
+        .filter(|(case, ..)| runner.options.wants_case(case))
         .map(|(case, title, about)| section(runner, case, title, about))
         .collect()
 }

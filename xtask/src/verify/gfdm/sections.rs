@@ -23,7 +23,7 @@ pub(super) fn sections(
     fractions: &[Fractions],
     iterations: &[Iterations],
 ) -> Vec<Section> {
-    let wanted = |case: &&Case| runner.options.case.as_deref().is_none_or(|c| c == case.name);
+    let wanted = |case: &&Case| runner.options.wants_case(case.name);
     CASES
         .iter()
         .filter(wanted)

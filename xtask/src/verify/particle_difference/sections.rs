@@ -11,7 +11,7 @@ use crate::verify::study::{Key, Picture, Section, find};
 const SHOWN: u64 = SEEDS[1];
 
 pub(super) fn sections(runner: &Runner<'_>) -> Vec<Section> {
-    let wanted = |case: &str| runner.options.case.as_deref().is_none_or(|c| c == case);
+    let wanted = |case: &str| runner.options.wants_case(case);
     let mut sections: Vec<Section> =
         LADDERS.iter().filter(|l| wanted(l.case)).map(|ladder| section(runner, ladder)).collect();
     if wanted("slit") {

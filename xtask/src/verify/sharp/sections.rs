@@ -9,7 +9,7 @@ use crate::verify::study::{Key, Picture, Section, find};
 use crate::verify::variant::Variant;
 
 pub(super) fn sections(runner: &Runner<'_>, ladders: &[Ladder]) -> Vec<Section> {
-    let wanted = |case: &str| runner.options.case.as_deref().is_none_or(|c| c == case);
+    let wanted = |case: &str| runner.options.wants_case(case);
     ladders.iter().filter(|l| wanted(l.case)).map(|ladder| section(runner, ladder)).collect()
 }
 
