@@ -119,13 +119,6 @@ impl DifferenceMatrix {
         }
     }
 
-    /// The diagonal, rounded.
-    pub(crate) fn diagonals(&self) -> Vec<f64> {
-        let mut diagonals = vec![0.0; self.n()];
-        for_each_row(&mut diagonals, |i, d| *d = self.diagonal(i));
-        diagonals
-    }
-
     /// Powers of two by which rows are multiplied for their largest entries to lie between 1 and 2.
     pub(crate) fn balancing_factors(&self) -> Vec<f64> {
         let mut factors = vec![0.0; self.n()];

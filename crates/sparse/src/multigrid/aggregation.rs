@@ -1,6 +1,6 @@
 //! Aggregates: the unknowns of the next level.
 
-use super::strength::Graph;
+use super::strength::Bonds;
 use crate::difference::DifferenceMatrix;
 use crate::parallel;
 
@@ -18,7 +18,7 @@ pub(crate) struct Aggregates {
 /// with all their strong neighbours if these are still free; what is left joins the aggregate to which it is tied most;
 /// the rest founds aggregates with the free neighbours it has. Nodes whose bonds are strong one way only, or not at all,
 /// join that of their largest entry, with columns measured in `units`; settled ones stay out.
-pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Graph) -> Aggregates {
+pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &impl Bonds) -> Aggregates {
     let (founded, mut count) = founded(graph);
     let join = |i: usize| {
         let tied = graph.of(i).filter(|(j, _)| founded[*j] != NONE);
@@ -27,11 +27,11 @@ pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Grap
     };
     let mut of: Vec<u32> = parallel::map_rows(graph.len(), join);
     for i in 0..of.len() {
-        if of[i] == NONE && !graph.neighbors(i).is_empty() {
+        if of[i] == NONE && !graph.is_alone(i) {
             of[i] = count;
-            for &j in graph.neighbors(i) {
-                if of[j as usize] == NONE {
-                    of[j as usize] = count;
+            for j in graph.neighbors(i) {
+                if of[j] == NONE {
+                    of[j] = count;
                 }
             }
             count += 1;
@@ -44,14 +44,13 @@ pub(crate) fn standard(a: &DifferenceMatrix, units: Option<&[f64]>, graph: &Grap
 /// The aggregates of nodes with all their strong neighbours, and how many these are. One front goes through all nodes, in 1 to 2 % of
 /// the time of a set-up: where blocks of nodes meet that are gone through side by side, aggregates do not fit together, and each level
 /// makes that worse (`docs/multigrid.md`).
-pub(super) fn founded(graph: &Graph) -> (Vec<u32>, u32) {
+pub(super) fn founded(graph: &impl Bonds) -> (Vec<u32>, u32) {
     let mut of = vec![NONE; graph.len()];
     let mut count = 0;
     for i in 0..of.len() {
-        let neighbors = graph.neighbors(i);
-        if of[i] == NONE && !neighbors.is_empty() && neighbors.iter().all(|&j| of[j as usize] == NONE) {
+        if of[i] == NONE && !graph.is_alone(i) && graph.neighbors(i).all(|j| of[j] == NONE) {
             of[i] = count;
-            neighbors.iter().for_each(|&j| of[j as usize] = count);
+            graph.neighbors(i).for_each(|j| of[j] = count);
             count += 1;
         }
     }
@@ -68,11 +67,11 @@ fn stronger(best: Option<(usize, f64)>, next: (usize, f64)) -> Option<(usize, f6
 pub(crate) fn adopt(
     a: &DifferenceMatrix,
     units: Option<&[f64]>,
-    graph: &Graph,
+    graph: &impl Bonds,
     of: &mut [u32],
     count: &mut u32,
 ) {
-    let mut left: Vec<usize> = (0..of.len()).filter(|&i| of[i] == NONE && !graph.settled[i]).collect();
+    let mut left: Vec<usize> = (0..of.len()).filter(|&i| of[i] == NONE && !graph.is_settled(i)).collect();
     while !left.is_empty() {
         let found: Vec<(usize, u32)> =
             left.iter().filter_map(|&i| Some((i, nearest(a, units, of, i)?))).collect();

@@ -1,9 +1,7 @@
 //! What relaxation leaves of the constant: the field that prolongation reproduces.
 
-use super::SmootherKind;
-use super::smoother::Smoother;
+use super::smoother::sweep;
 use crate::difference::DifferenceMatrix;
-use crate::error::MatrixError;
 
 /// Sweeps of Gauss-Seidel for `A c = 0` from `c = 1`.
 const SWEEPS: usize = 4;
@@ -15,16 +13,16 @@ const STEPS: f64 = 1024.0;
 /// What is left must be a unit to measure unknowns in: this many steps at least, a tenth.
 const LEAST: f64 = 102.0;
 
-/// The constant after a few sweeps of Gauss-Seidel for `A (c / s) = 0`, in steps of which [`value`] has the size.
-pub(crate) fn relaxed(a: &DifferenceMatrix, s: &[f64]) -> Result<Vec<u16>, MatrixError> {
+/// The constant after a few sweeps of Gauss-Seidel for `A (c / s) = 0`, in steps of which [`value`] has the size. `inverse` has the reciprocals of the
+/// diagonal.
+pub(crate) fn relaxed(a: &DifferenceMatrix, inverse: &[f64], s: &[f64]) -> Vec<u16> {
     let n = a.n();
-    let smoother = Smoother::new(SmootherKind::GaussSeidel, a)?;
     let (zero, mut t) = (vec![0.0; n], vec![0.0; n]);
     let scale = |i: usize| s.get(i).copied().unwrap_or(1.0);
     let mut c: Vec<f64> = (0..n).map(|i| 1.0 / scale(i)).collect();
-    (0..SWEEPS).for_each(|_| smoother.before(a, &zero, &mut c, &mut t));
+    (0..SWEEPS).for_each(|_| sweep::<false>(a, inverse, &zero, &mut c, &mut t));
     let steps = |c: f64| if c.is_nan() { STEPS } else { (c * STEPS).round().clamp(LEAST, STEPS) };
-    Ok(c.iter().enumerate().map(|(i, c)| steps(c * scale(i)) as u16).collect())
+    c.iter().enumerate().map(|(i, c)| steps(c * scale(i)) as u16).collect()
 }
 
 /// What so many steps are.

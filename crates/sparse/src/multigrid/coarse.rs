@@ -1,7 +1,7 @@
 //! The coarsest level, solved directly.
 
 use super::SmootherKind;
-use super::smoother::Smoother;
+use super::smoother::{Smoother, reciprocals};
 use super::strength;
 use crate::csr::Csr;
 use crate::difference::DifferenceMatrix;
@@ -39,7 +39,10 @@ impl Coarse {
     /// nothing for right-hand sides that have a solution; any other singular matrix is shifted.
     pub(crate) fn new(a: &Arc<DifferenceMatrix>, small: usize) -> Result<Self, SolveError> {
         if a.n() > small && strength::all_settled(a) {
-            return Ok(Self::Relaxed(Arc::clone(a), Smoother::new(SmootherKind::GaussSeidel, a)?));
+            return Ok(Self::Relaxed(
+                Arc::clone(a),
+                Smoother::new(SmootherKind::GaussSeidel, a, reciprocals(a))?,
+            ));
         }
         let floating = floating_parts(a);
         let a = a.to_csr();

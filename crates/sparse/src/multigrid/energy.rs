@@ -2,7 +2,7 @@
 
 use super::aggregation::Aggregates;
 use super::prolongation;
-use super::strength::Graph;
+use super::strength::Bonds;
 use crate::csr::{Csr, for_each_row_of};
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
@@ -20,7 +20,7 @@ const STEPS: usize = 4;
 ///
 /// # Errors
 /// [`MatrixError::NotFinite`] where `D^-1 A` overflows.
-pub(crate) fn minimized(a: &Csr, graph: &Graph, aggregates: &Aggregates) -> Result<Csr, MatrixError> {
+pub(crate) fn minimized(a: &Csr, graph: &impl Bonds, aggregates: &Aggregates) -> Result<Csr, MatrixError> {
     let start = prolongation::smoothed(
         &DifferenceMatrix::from_csr(a)?,
         None,

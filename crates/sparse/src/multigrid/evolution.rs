@@ -1,6 +1,6 @@
 //! Evolution strength: two unknowns belong together if a point source at one soon looks the same at the other.
 
-use super::strength::Graph;
+use super::strength::{Bonds, Graph};
 use crate::csr::Csr;
 use crate::parallel;
 
@@ -19,7 +19,7 @@ const PERFECT: f64 = 1e-12;
 /// The graph of strength by evolution: `z = (I - omega D^-1 A)^2 e_i` is compared with the constant at its neighbours `j`;
 /// `|1 - z_i / z_j|` at most [`SLACK`] times the least makes a strong bond, if it is one seen from both ends. `base` says
 /// which rows are settled.
-pub(crate) fn evolution(a: &Csr, base: &Graph) -> Graph {
+pub(crate) fn evolution(a: &Csr, base: &impl Bonds) -> Graph {
     let n = a.nrows();
     let transpose = a.transpose();
     let diagonal = a.diagonal();
@@ -40,9 +40,9 @@ pub(crate) fn evolution(a: &Csr, base: &Graph) -> Graph {
             let e = if own * z > 0.0 { (1.0 - own / z).abs() } else { f64::INFINITY };
             (j, e.max(PERFECT))
         };
-        let others = a.row(i).0.iter().filter(|j| **j as usize != i && !base.settled[**j as usize]);
+        let others = a.row(i).0.iter().filter(|j| **j as usize != i && !base.is_settled(**j as usize));
         let mut errors: Vec<(u32, f64)> =
-            if base.settled[i] { Vec::new() } else { others.map(error).collect() };
+            if base.is_settled(i) { Vec::new() } else { others.map(error).collect() };
         let best = errors.iter().fold(f64::INFINITY, |m, e| m.min(e.1));
         errors.retain(|e| e.1.is_finite() && e.1 <= SLACK * best);
         sources.iter().for_each(|&k| source[k as usize] = 0.0);
@@ -60,20 +60,14 @@ pub(crate) fn evolution(a: &Csr, base: &Graph) -> Graph {
         let found = rows[j as usize].binary_search_by_key(&(i as u32), |e| e.0);
         found.ok().map(|k| rows[j as usize][k].1)
     };
-    let mut graph = Graph {
-        offsets: vec![0],
-        neighbors: Vec::new(),
-        strengths: Vec::new(),
-        settled: base.settled.clone(),
-    };
+    let mut graph = Graph::empty((0..n).map(|i| base.is_settled(i)).collect());
     for (i, row) in rows.iter().enumerate() {
         for &(j, e) in row {
             if let Some(other) = back(i, j) {
-                graph.neighbors.push(j);
-                graph.strengths.push(1.0 / e.max(other));
+                graph.push(j, 1.0 / e.max(other));
             }
         }
-        graph.offsets.push(graph.neighbors.len());
+        graph.end_row();
     }
     graph
 }

@@ -1,6 +1,6 @@
 //! The unknowns as the levels have them: in an order and in units of their own.
 
-use super::{Candidate, MultigridParams, candidate, galerkin, kept, numbering};
+use super::{Candidate, MultigridParams, candidate, galerkin, kept, numbering, smoother};
 use crate::csr::for_each_row;
 use crate::difference::DifferenceMatrix;
 use crate::error::MatrixError;
@@ -31,19 +31,20 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// The frame and the matrix of the finest level.
+    /// The frame, the matrix of the finest level and the reciprocals of its diagonal.
     pub(crate) fn new(
         matrix: Arc<DifferenceMatrix>,
         scaling: Scaling,
         params: &MultigridParams,
-    ) -> Result<(Self, Arc<DifferenceMatrix>), MatrixError> {
+    ) -> Result<(Self, Arc<DifferenceMatrix>, Vec<f64>), MatrixError> {
         let order = if params.renumber { numbering::found(matrix.off_diagonal()) } else { None };
         let mut frame = Self { n: matrix.n(), scaling, order, candidate: Vec::new() };
         let matrix = frame.matrix(matrix)?;
+        let inverse = smoother::reciprocals(&matrix);
         if params.candidate == Candidate::Relaxed {
-            frame.candidate = candidate::relaxed(&matrix, &frame.scales())?;
+            frame.candidate = candidate::relaxed(&matrix, &inverse, &frame.scales());
         }
-        Ok((frame, matrix))
+        Ok((frame, matrix, inverse))
     }
 
     /// S in the order of the levels.
@@ -116,8 +117,8 @@ impl Frame {
     }
 
     /// The unknowns of the finest level that stay as they are.
-    pub(crate) fn kept(&self, a: &DifferenceMatrix, keep: f64) -> Vec<bool> {
-        kept::rows(a, &self.scales(), keep)
+    pub(crate) fn kept(&self, a: &DifferenceMatrix, inverse: &[f64], keep: f64) -> Vec<bool> {
+        kept::rows(a, inverse, &self.scales(), keep)
     }
 
     /// Bytes that it keeps, without what it shares.

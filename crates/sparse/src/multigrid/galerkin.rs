@@ -5,6 +5,13 @@ use crate::csr::{LooseRows, computed_rows, for_each_row};
 use crate::difference::{DifferenceMatrix, ROUNDING};
 use crate::parallel;
 
+/// Parts of the rows of A that are multiplied one after the other: `A P` would take as many bytes as a quarter of A, and a few rows of
+/// it at a time are enough.
+const PARTS: usize = 8;
+
+/// Rows of a part are a multiple of this, enough for several threads.
+const LEAST_ROWS: usize = 16_384;
+
 /// `A (c / s)`, for ones where no `c` or `s` is given: the sums of rows where unknowns are values over `s`, exactly zero where
 /// nothing but rounding is left of the entries, and the rest by differences, so that weak bonds of a stiff region in which `c`
 /// is constant are not lost.
@@ -67,23 +74,32 @@ pub(crate) fn product(
     let mut sums = vec![0.0; r.nrows()];
     r.mul_vec(&row_sums, &mut sums);
     drop(row_sums);
-    let ap = LooseRows::new(a.n(), p.ncols(), |i, places, block| {
-        let (columns, values) = a.row(i);
-        let diagonal = a.diagonal(i);
-        for (&k, a_ik) in columns.iter().zip(values).chain([(&(i as u32), &diagonal)]) {
-            let k = k as usize;
-            let a_ik = factor(w, i) * a_ik * factor(c, k);
-            p.row(k).for_each(|(j, p_kj)| block.add(places, j as u32, a_ik * p_kj));
-        }
-    });
-    let off = computed_rows(r.nrows(), p.ncols(), |i, places, block| {
-        for (k, r_ik) in r.row(i) {
-            let (columns, values) = ap.row(k);
-            for (&j, b) in columns.iter().zip(values) {
-                if j as usize != i {
+    let at_once = a.n().div_ceil(PARTS).next_multiple_of(LEAST_ROWS);
+    let part = |first: usize| {
+        let rows = first..a.n().min(first + at_once);
+        let ap = LooseRows::new(rows.len(), p.ncols(), |k, places, block| {
+            let i = first + k;
+            let (columns, values) = a.row(i);
+            let diagonal = a.diagonal(i);
+            for (&k, a_ik) in columns.iter().zip(values).chain([(&(i as u32), &diagonal)]) {
+                let k = k as usize;
+                let a_ik = factor(w, i) * a_ik * factor(c, k);
+                p.row(k).for_each(|(j, p_kj)| block.add(places, j as u32, a_ik * p_kj));
+            }
+        });
+        LooseRows::new(r.nrows(), p.ncols(), |i, places, block| {
+            for (k, r_ik) in r.row_within(i, rows.clone()) {
+                let (columns, values) = ap.row(k - first);
+                for (&j, b) in columns.iter().zip(values).filter(|(j, _)| **j as usize != i) {
                     block.add(places, j, r_ik * b);
                 }
             }
+        })
+    };
+    let parts: Vec<LooseRows> = (0..a.n()).step_by(at_once).map(part).collect();
+    let off = computed_rows(r.nrows(), p.ncols(), |i, places, block| {
+        for (&j, v) in parts.iter().flat_map(|part| part.row(i).0.iter().zip(part.row(i).1)) {
+            block.add(places, j, *v);
         }
     });
     DifferenceMatrix::from_trusted(off, sums)

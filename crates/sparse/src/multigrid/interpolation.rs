@@ -1,6 +1,7 @@
 //! Prolongation and restriction as they are kept.
 
 use crate::csr::{Csr, for_each_row};
+use std::ops::Range;
 
 /// Weights are multiples of this, or of a larger power of two in rows with weights above [`LARGEST`]: single precision holds them
 /// and the sums of rows exactly.
@@ -71,6 +72,15 @@ impl Interpolation {
         let range = self.offsets[i] as usize..self.offsets[i + 1] as usize;
         let columns = self.indices[range.clone()].iter().map(|&j| j as usize);
         columns.zip(self.values[range].iter().map(|&v| f64::from(v)))
+    }
+
+    /// The columns of row `i` that are within a range, and their weights.
+    pub(crate) fn row_within(&self, i: usize, columns: Range<usize>) -> impl Iterator<Item = (usize, f64)> {
+        let (start, end) = (self.offsets[i] as usize, self.offsets[i + 1] as usize);
+        let before = |j: usize| start + self.indices[start..end].partition_point(|&k| (k as usize) < j);
+        let range = before(columns.start)..before(columns.end);
+        let values = self.values[range.clone()].iter().map(|&v| f64::from(v));
+        self.indices[range].iter().map(|&j| j as usize).zip(values)
     }
 
     pub(crate) fn is_empty(&self, i: usize) -> bool {

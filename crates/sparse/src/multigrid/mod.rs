@@ -13,6 +13,7 @@ mod frame;
 mod galerkin;
 mod interpolation;
 mod kept;
+mod marks;
 mod numbering;
 mod pairwise;
 mod params;
@@ -102,15 +103,16 @@ impl Multigrid {
         params: &MultigridParams,
     ) -> Result<Self, SolveError> {
         params.check()?;
-        let (frame, mut a) = Frame::new(matrix, scaling, params)?;
+        let (frame, mut a, mut inverse) = Frame::new(matrix, scaling, params)?;
         let coarse = Coarse::trivial()?;
         let mut multigrid =
             Self { levels: Vec::new(), coarse, frame, params: *params, info: HierarchyInfo::default() };
         multigrid.start(&a);
-        let mut kept = multigrid.frame.kept(&a, params.keep);
+        let mut kept = multigrid.frame.kept(&a, &inverse, params.keep);
         while a.n() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
-            let Some((p, r, coarse)) = multigrid.next_level(&a, &mut kept)? else { break };
-            a = multigrid.add_level(a, p, r, coarse)?;
+            let Some((p, r, coarse)) = multigrid.next_level(&a, &inverse, &mut kept)? else { break };
+            a = multigrid.add_level(a, inverse, p, r, coarse)?;
+            inverse = smoother::reciprocals(&a);
         }
         multigrid.coarse = Coarse::new(&a, params.coarsest)?;
         Ok(multigrid)
@@ -133,7 +135,8 @@ impl Multigrid {
         self.start(&a);
         for level in old {
             let coarse = self.coarse_matrix(&a, &level.p, &level.r)?;
-            a = self.add_level(a, level.p, level.r, coarse)?;
+            let inverse = smoother::reciprocals(&a);
+            a = self.add_level(a, inverse, level.p, level.r, coarse)?;
         }
         self.coarse = Coarse::new(&a, self.params.coarsest)?;
         Ok(())
@@ -148,13 +151,15 @@ impl Multigrid {
     fn next_level(
         &self,
         a: &Arc<DifferenceMatrix>,
+        inverse: &[f64],
         kept: &mut Vec<bool>,
     ) -> Result<Option<NextLevel>, SolveError> {
         let finest = self.levels.is_empty();
         let make = |kept: &mut Vec<bool>, step: Option<Step>| {
             let units = if finest { self.frame.units() } else { None };
             let weights = if finest { self.frame.weights() } else { None };
-            let transfers = transfers(a, units.as_deref(), weights.as_deref(), kept, &self.params, step)?;
+            let in_units = [units.as_deref(), weights.as_deref()];
+            let transfers = transfers(a, inverse, in_units, kept, &self.params, step)?;
             drop((units, weights));
             let Some((p, r)) = transfers else { return Ok(None) };
             let coarse = self.coarse_matrix(a, &p, &r)?;
@@ -198,13 +203,14 @@ impl Multigrid {
     fn add_level(
         &mut self,
         a: Arc<DifferenceMatrix>,
+        inverse: Vec<f64>,
         p: Interpolation,
         r: Interpolation,
         coarse: DifferenceMatrix,
     ) -> Result<Arc<DifferenceMatrix>, SolveError> {
         let smoother = match self.levels.len() {
-            0 => Smoother::new(self.params.smoother, &a)?,
-            _ => Smoother::of_coarse(self.params.smoother, &a)?,
+            0 => Smoother::new(self.params.smoother, &a, inverse)?,
+            _ => Smoother::of_coarse(self.params.smoother, &a, inverse)?,
         };
         self.info.levels.push((coarse.n(), coarse.nnz() + coarse.n()));
         self.info.bytes += coarse.bytes() + p.bytes() + r.bytes() + smoother.bytes();

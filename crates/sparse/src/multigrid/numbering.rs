@@ -33,12 +33,12 @@ pub(crate) fn found(a: &Csr) -> Option<Vec<u32>> {
 }
 
 /// Mean distance of the entries from the diagonal, which is one of them.
-fn spread(a: &Csr, place: impl Fn(usize) -> usize) -> f64 {
+fn spread(a: &Csr, place: impl Fn(usize) -> usize + Sync) -> f64 {
     let of = |i: usize| -> f64 {
         let here = place(i);
         a.row(i).0.iter().map(|&j| place(j as usize).abs_diff(here) as f64).sum()
     };
-    (0..a.nrows()).map(of).sum::<f64>() / (a.nnz() + a.nrows()).max(1) as f64
+    parallel::map_rows(a.nrows(), of).iter().sum::<f64>() / (a.nnz() + a.nrows()).max(1) as f64
 }
 
 /// Level by level from an end of each connected part, neighbours by their degree (Cuthill and McKee 1969; the end as George

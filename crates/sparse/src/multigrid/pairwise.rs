@@ -1,7 +1,7 @@
 //! Aggregates of two pairs each (Notay, Electron. Trans. Numer. Anal. 37, 2010).
 
 use super::aggregation::{Aggregates, NONE, adopt};
-use super::strength::Graph;
+use super::strength::{Bonds, Graph};
 use crate::difference::DifferenceMatrix;
 
 /// Passes of pairing: two make aggregates of about four.
@@ -24,7 +24,7 @@ fn matched(graph: &Graph) -> (Vec<u32>, u32) {
     let mut of = vec![NONE; graph.len()];
     let mut count = 0;
     for i in 0..graph.len() {
-        if of[i] != NONE || graph.neighbors(i).is_empty() {
+        if of[i] != NONE || graph.is_alone(i) {
             continue;
         }
         let free = graph.of(i).filter(|(j, _)| of[*j] == NONE && *j != i);
@@ -47,12 +47,7 @@ fn collapsed(graph: &Graph, of: &[u32], count: u32) -> Graph {
     for (i, &k) in of.iter().enumerate().filter(|(_, k)| **k != NONE) {
         members[k as usize].push(i);
     }
-    let mut coarse = Graph {
-        offsets: vec![0],
-        neighbors: Vec::new(),
-        strengths: Vec::new(),
-        settled: vec![false; count as usize],
-    };
+    let mut coarse = Graph::empty(vec![false; count as usize]);
     for (k, members) in members.iter().enumerate() {
         let mut bonds: Vec<(u32, f64)> = vec![(k as u32, 0.0)];
         for &i in members {
@@ -62,16 +57,14 @@ fn collapsed(graph: &Graph, of: &[u32], count: u32) -> Graph {
         }
         bonds.sort_by_key(|b| b.0);
         for (j, s) in bonds {
-            let start = coarse.offsets[k];
-            if coarse.neighbors.len() > start && coarse.neighbors.last() == Some(&j) {
+            if coarse.row_len() > 0 && coarse.neighbors.last() == Some(&j) {
                 let end = coarse.strengths.len() - 1;
                 coarse.strengths[end] += s;
             } else {
-                coarse.neighbors.push(j);
-                coarse.strengths.push(s);
+                coarse.push(j, s);
             }
         }
-        coarse.offsets.push(coarse.neighbors.len());
+        coarse.end_row();
     }
     coarse
 }

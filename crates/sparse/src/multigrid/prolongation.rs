@@ -1,7 +1,7 @@
 //! From aggregates to interpolation.
 
 use super::aggregation::{Aggregates, NONE};
-use super::strength::Graph;
+use super::strength::Bonds;
 use crate::csr::{Csr, computed_rows};
 use crate::difference::DifferenceMatrix;
 
@@ -49,7 +49,7 @@ pub(crate) fn tentative(aggregates: &Aggregates) -> Csr {
 pub(crate) fn smoothed(
     a: &DifferenceMatrix,
     units: Option<&[f64]>,
-    graph: &Graph,
+    graph: &impl Bonds,
     aggregates: &Aggregates,
     step: Step,
 ) -> Csr {
@@ -60,10 +60,8 @@ pub(crate) fn smoothed(
         if own == NONE {
             return;
         }
-        let strong = graph.neighbors(i);
-        let (columns, values) = a.row(i);
         let mut size = 0.0;
-        for_each_common(columns, values, strong, |j, a_ij| {
+        graph.entries(a, i, |j, a_ij| {
             if of[j as usize] != NONE {
                 size -= a_ij * unit(j);
             }
@@ -74,7 +72,7 @@ pub(crate) fn smoothed(
         }
         let mut kept = 1.0;
         block.add(places, own, 0.0);
-        for_each_common(columns, values, strong, |j, a_ij| {
+        graph.entries(a, i, |j, a_ij| {
             let other = of[j as usize];
             if other != NONE && other != own {
                 let weight = -step.damping * a_ij * unit(j) / size;
@@ -85,15 +83,4 @@ pub(crate) fn smoothed(
         block.add(places, own, kept);
         block.lump(places, own, step.least_weight);
     })
-}
-
-/// Calls `f(j, a_ij)` for the columns of a row that are strong; both lists are sorted.
-fn for_each_common(columns: &[u32], values: &[f64], strong: &[u32], mut f: impl FnMut(u32, f64)) {
-    let mut next = 0;
-    for (&j, &a_ij) in columns.iter().zip(values) {
-        if next < strong.len() && strong[next] == j {
-            f(j, a_ij);
-            next += 1;
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Coarse unknowns that are a subset of the fine ones, and interpolation from them (Ruge and Stüben, in "Multigrid methods",
 //! SIAM 1987; Stüben, J. Comput. Appl. Math. 128, 2001).
 
-use super::strength::Graph;
+use super::strength::{Bonds, Graph};
 use crate::csr::{Csr, computed_rows};
 
 /// Entries that a row of extended interpolation keeps at most; the others' weight goes to those that stay (De Sterck et
@@ -12,28 +12,22 @@ const KEPT: usize = 4;
 const FINE: u32 = u32::MAX;
 
 /// Strong dependence of rows: entries of the sign opposite to the diagonal, of at least `threshold` times the largest.
-pub(crate) fn dependence(a: &Csr, threshold: f64, base: &Graph) -> Graph {
-    let mut graph = Graph {
-        offsets: vec![0],
-        neighbors: Vec::new(),
-        strengths: Vec::new(),
-        settled: base.settled.clone(),
-    };
+pub(crate) fn dependence(a: &Csr, threshold: f64, base: &impl Bonds) -> Graph {
+    let mut graph = Graph::empty((0..a.nrows()).map(|i| base.is_settled(i)).collect());
     for i in 0..a.nrows() {
         let diagonal = a.get(i, i);
         let (columns, values) = a.row(i);
         let size = |v: f64| if diagonal == 0.0 { 0.0 } else { -v / diagonal };
         let others = || columns.iter().zip(values).filter(|(j, _)| **j as usize != i);
         let largest = others().fold(0.0_f64, |m, (_, &v)| m.max(size(v)));
-        if !base.settled[i] && largest > 0.0 {
+        if !base.is_settled(i) && largest > 0.0 {
             for (&j, &v) in others() {
-                if size(v) >= threshold * largest && size(v) > 0.0 && !base.settled[j as usize] {
-                    graph.neighbors.push(j);
-                    graph.strengths.push(size(v));
+                if size(v) >= threshold * largest && size(v) > 0.0 && !base.is_settled(j as usize) {
+                    graph.push(j, size(v));
                 }
             }
         }
-        graph.offsets.push(graph.neighbors.len());
+        graph.end_row();
     }
     graph
 }
@@ -54,7 +48,7 @@ pub(crate) fn splitting(graph: &Graph) -> (Vec<u32>, usize) {
     let mut coarse = vec![false; n];
     while let Some((_, i)) = queue.pop_first() {
         open[i] = false;
-        if weight[i] == 0 && !graph.neighbors(i).is_empty() {
+        if weight[i] == 0 && !graph.list(i).is_empty() {
             // Nobody needs it, and it can be interpolated.
             continue;
         }
@@ -65,7 +59,7 @@ pub(crate) fn splitting(graph: &Graph) -> (Vec<u32>, usize) {
                 continue;
             }
             queue.remove(&key(weight[j], j));
-            for &k in graph.neighbors(j) {
+            for &k in graph.list(j) {
                 let k = k as usize;
                 if open[k] {
                     queue.remove(&key(weight[k], k));
@@ -74,7 +68,7 @@ pub(crate) fn splitting(graph: &Graph) -> (Vec<u32>, usize) {
                 }
             }
         }
-        for &k in graph.neighbors(i) {
+        for &k in graph.list(i) {
             let k = k as usize;
             if open[k] && weight[k] > 0 {
                 queue.remove(&key(weight[k], k));
@@ -85,7 +79,7 @@ pub(crate) fn splitting(graph: &Graph) -> (Vec<u32>, usize) {
     }
     // A fine unknown without a strong coarse neighbour, which the last steps may leave, is made coarse.
     for i in 0..n {
-        if !coarse[i] && !graph.settled[i] && graph.neighbors(i).iter().all(|&j| !coarse[j as usize]) {
+        if !coarse[i] && !graph.settled[i] && graph.list(i).iter().all(|&j| !coarse[j as usize]) {
             coarse[i] = true;
         }
     }
@@ -104,7 +98,7 @@ pub(crate) fn splitting(graph: &Graph) -> (Vec<u32>, usize) {
 fn reversed(graph: &Graph) -> Vec<Vec<u32>> {
     let mut reverse = vec![Vec::new(); graph.len()];
     for i in 0..graph.len() {
-        graph.neighbors(i).iter().for_each(|&j| reverse[j as usize].push(i as u32));
+        graph.list(i).iter().for_each(|&j| reverse[j as usize].push(i as u32));
     }
     reverse
 }
@@ -119,7 +113,7 @@ pub(crate) fn interpolation(a: &Csr, graph: &Graph, number: &[u32], count: usize
             return;
         }
         let mut weights: Vec<(u32, f64)> = Vec::new();
-        for &j in graph.neighbors(i) {
+        for &j in graph.list(i) {
             let a_ij = a.get(i, j as usize);
             if number[j as usize] != FINE {
                 weights.push((number[j as usize], a_ij));
@@ -147,7 +141,7 @@ fn hand_on(
     let diagonal = a.get(k, k);
     let back = a.get(k, i);
     let mut total = if back * diagonal < 0.0 { back } else { 0.0 };
-    let coarse = || graph.neighbors(k).iter().filter(|&&l| number[l as usize] != FINE);
+    let coarse = || graph.list(k).iter().filter(|&&l| number[l as usize] != FINE);
     total += coarse().map(|&l| a.get(k, l as usize)).sum::<f64>();
     if total != 0.0 {
         weights.extend(coarse().map(|&l| (number[l as usize], a_ik * a.get(k, l as usize) / total)));

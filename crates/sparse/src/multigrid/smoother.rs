@@ -28,26 +28,40 @@ pub(crate) enum Smoother {
     Ilu(BlockIlu),
 }
 
+/// The reciprocals of the diagonal, zero where that is zero.
+pub(crate) fn reciprocals(a: &DifferenceMatrix) -> Vec<f64> {
+    let reciprocal = |d: f64| if d == 0.0 { 0.0 } else { 1.0 / d };
+    parallel::map_rows(a.n(), |i| reciprocal(a.diagonal(i)))
+}
+
 impl Smoother {
-    pub(crate) fn new(kind: SmootherKind, a: &DifferenceMatrix) -> Result<Self, MatrixError> {
-        let inverse = |factor: f64| {
-            let diagonal = a.diagonals();
-            diagonal.into_iter().map(|d| if d == 0.0 { 0.0 } else { factor / d }).collect()
-        };
+    /// `inverse` has the [`reciprocals`] of the diagonal.
+    pub(crate) fn new(
+        kind: SmootherKind,
+        a: &DifferenceMatrix,
+        mut inverse: Vec<f64>,
+    ) -> Result<Self, MatrixError> {
         Ok(match kind {
-            SmootherKind::Jacobi => Self::Jacobi(inverse(JACOBI_DAMPING)),
-            SmootherKind::GaussSeidel => Self::GaussSeidel(inverse(1.0)),
-            SmootherKind::ColoredGaussSeidel => Self::Colored(Colored::new(a, inverse(1.0))),
-            SmootherKind::Chebyshev => Self::Chebyshev(Chebyshev::new(a, inverse(1.0))),
+            SmootherKind::Jacobi => {
+                inverse.iter_mut().for_each(|d| *d *= JACOBI_DAMPING);
+                Self::Jacobi(inverse)
+            }
+            SmootherKind::GaussSeidel => Self::GaussSeidel(inverse),
+            SmootherKind::ColoredGaussSeidel => Self::Colored(Colored::new(a, inverse)),
+            SmootherKind::Chebyshev => Self::Chebyshev(Chebyshev::new(a, inverse)),
             SmootherKind::Ilu0 => Self::Ilu(BlockIlu::new(&a.to_csr())?),
         })
     }
 
     /// The same for a matrix that is a product with the prolongation.
-    pub(crate) fn of_coarse(kind: SmootherKind, a: &DifferenceMatrix) -> Result<Self, MatrixError> {
+    pub(crate) fn of_coarse(
+        kind: SmootherKind,
+        a: &DifferenceMatrix,
+        inverse: Vec<f64>,
+    ) -> Result<Self, MatrixError> {
         match kind {
             SmootherKind::Ilu0 => Ok(Self::Ilu(BlockIlu::of_coarse(a.to_csr())?)),
-            kind => Self::new(kind, a),
+            kind => Self::new(kind, a, inverse),
         }
     }
 
@@ -132,7 +146,7 @@ fn forward_from_zero(a: &DifferenceMatrix, inverse: &[f64], b: &[f64], x: &mut [
 }
 
 /// A sweep of Gauss-Seidel, from the last row to the first if `BACKWARD`.
-fn sweep<const BACKWARD: bool>(
+pub(super) fn sweep<const BACKWARD: bool>(
     a: &DifferenceMatrix,
     inverse: &[f64],
     b: &[f64],

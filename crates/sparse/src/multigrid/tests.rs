@@ -1,5 +1,6 @@
 //! What the levels must be whatever the matrix.
 
+use super::strength::Bonds;
 use super::*;
 use crate::difference::DifferenceMatrix;
 use proptest::prelude::*;
@@ -24,8 +25,12 @@ fn m_matrix(n: usize, bonds: &[(usize, f64, f64)], symmetric: bool) -> Differenc
     .expect("entries are finite and in range")
 }
 
-fn levels(a: &DifferenceMatrix) -> (strength::Graph, Interpolation, Interpolation, Vec<f64>) {
-    let graph = strength::symmetric(a, None, 0.25);
+fn marked(a: &DifferenceMatrix) -> marks::Marks<'_> {
+    marks::symmetric(a, &smoother::reciprocals(a), None, 0.25)
+}
+
+fn levels(a: &DifferenceMatrix) -> (marks::Marks<'_>, Interpolation, Interpolation, Vec<f64>) {
+    let graph = marked(a);
     let aggregates = aggregation::standard(a, None, &graph);
     let p = prolongation::smoothed(a, None, &graph, &aggregates, Step::LONG);
     let p = Interpolation::new(p);
@@ -51,7 +56,7 @@ proptest! {
         let (graph, p, r, sums) = levels(&a);
         for i in 0..a.n() {
             let sum: f64 = p.row(i).map(|(_, w)| w).sum();
-            prop_assert!(sum == 1.0 || (graph.settled[i] && p.is_empty(i)));
+            prop_assert!(sum == 1.0 || (graph.is_settled(i) && p.is_empty(i)));
         }
         let coarse = galerkin::product(&a, sums, [None, None], &p, &r);
         let (p, r) = (p.to_csr(), r.to_csr());
@@ -76,7 +81,7 @@ proptest! {
         symmetric: bool,
     ) {
         let rows = m_matrix(150, &bonds, symmetric);
-        let graph = strength::symmetric(&rows, None, 0.25);
+        let graph = marked(&rows);
         let aggregates = aggregation::standard(&rows, None, &graph);
         let jacobi = prolongation::smoothed(&rows, None, &graph, &aggregates, Step::LONG);
         let a = rows.to_csr();
@@ -100,17 +105,17 @@ proptest! {
         bonds in prop::collection::vec((0usize..7, -3.0..3.0, -3.0..3.0), 200..400),
     ) {
         let a = m_matrix(100, &bonds, false);
-        let graph = strength::symmetric(&a, None, 0.25);
+        let graph = marked(&a);
         let (of, count) = aggregation::founded(&graph);
         let mut founders = vec![0; count as usize];
         for i in 0..100 {
-            let whole = graph.neighbors(i).iter().all(|&j| of[j as usize] == of[i]);
+            let whole = graph.neighbors(i).all(|j| of[j] == of[i]);
             let size = of.iter().filter(|&&k| k == of[i]).count();
-            if of[i] != aggregation::NONE && whole && size == 1 + graph.neighbors(i).len() {
+            if of[i] != aggregation::NONE && whole && size == 1 + graph.neighbors(i).count() {
                 founders[of[i] as usize] += 1;
             }
-            let room = graph.neighbors(i).iter().all(|&j| of[j as usize] == aggregation::NONE);
-            prop_assert!(of[i] != aggregation::NONE || graph.neighbors(i).is_empty() || !room);
+            let room = graph.neighbors(i).all(|j| of[j] == aggregation::NONE);
+            prop_assert!(of[i] != aggregation::NONE || graph.is_alone(i) || !room);
         }
         prop_assert!(founders.iter().all(|&n| n > 0));
     }
@@ -120,11 +125,11 @@ proptest! {
         bonds in prop::collection::vec((0usize..7, -3.0..3.0, -3.0..3.0), 200..400),
     ) {
         let a = m_matrix(100, &bonds, false);
-        let graph = strength::symmetric(&a, None, 0.25);
+        let graph = marked(&a);
         let aggregates = aggregation::standard(&a, None, &graph);
         let mut members = vec![0; aggregates.count];
         for (i, &k) in aggregates.of.iter().enumerate() {
-            prop_assert!(k != aggregation::NONE || graph.settled[i] );
+            prop_assert!(k != aggregation::NONE || graph.is_settled(i) );
             if k != aggregation::NONE {
                 members[k as usize] += 1;
             }
@@ -184,7 +189,7 @@ fn disc(m: usize, contrast: f64) -> (DifferenceMatrix, Vec<f64>) {
 #[test]
 fn at_a_high_contrast_the_constant_of_every_region_is_reproduced() {
     let (a, indicator) = disc(40, 1e4);
-    let graph = strength::symmetric(&a, None, 0.25);
+    let graph = marked(&a);
     let aggregates = aggregation::standard(&a, None, &graph);
     let jacobi = prolongation::smoothed(&a, None, &graph, &aggregates, Step::LONG);
     for p in [jacobi, energy::minimized(&a.to_csr(), &graph, &aggregates).unwrap()] {

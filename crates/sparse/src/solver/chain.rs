@@ -46,7 +46,7 @@ impl Chain {
         params: &SolverParams,
     ) -> Result<Self, SolveError> {
         if let Some(row) =
-            (0..rows.n()).find(|&i| rows.diagonal(i) == 0.0 && rows.row(i).1.iter().all(|&v| v == 0.0))
+            (0..rows.n()).find(|&i| rows.row(i).1.iter().all(|&v| v == 0.0) && rows.row_sum(i) == 0.0)
         {
             return Err(SolveError::EmptyRow { row });
         }
