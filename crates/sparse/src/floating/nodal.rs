@@ -52,7 +52,7 @@ impl Nodal {
         let factors: Arc<[f64]> = Arc::from(system.factors());
         let unknowns = system.shared_scales();
         let scaling = Scaling { rows: Arc::clone(&factors), unknowns, ..Scaling::default() };
-        let multigrid = Multigrid::of(system.shared_matrix(), scaling, &levels_of(params))?;
+        let multigrid = Multigrid::of(system.shared_matrix(), scaling, &levels_of(system.matrix(), params))?;
         Ok(Self { multigrid, factors })
     }
 

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What was done to the rows and the unknowns of a matrix before its systems are solved: `F A S^-1`.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Scaling {
     /// F; ones where it is empty.
     pub(crate) rows: Arc<[f64]>,
@@ -45,6 +45,10 @@ impl Frame {
             frame.candidate = candidate::relaxed(&matrix, &inverse, &frame.scales());
         }
         Ok((frame, matrix, inverse))
+    }
+
+    pub(crate) fn scaling(&self) -> Scaling {
+        self.scaling.clone()
     }
 
     /// S in the order of the levels.

@@ -19,7 +19,9 @@ mod pairwise;
 mod params;
 mod prolongation;
 mod ruge_stueben;
+mod skew;
 mod smoother;
+mod stale;
 mod strength;
 #[cfg(test)]
 mod tests;
@@ -40,7 +42,9 @@ pub use params::{
     SmootherKind, StrengthKind,
 };
 use prolongation::Step;
+pub(crate) use skew::is_convective;
 use smoother::Smoother;
+use stale::Drift;
 use std::sync::Arc;
 use transfers::transfers;
 
@@ -65,6 +69,7 @@ pub struct Multigrid {
     frame: Frame,
     params: MultigridParams,
     info: HierarchyInfo,
+    drift: Drift,
 }
 
 /// Prolongation, restriction and matrix of a level that is to follow.
@@ -105,8 +110,14 @@ impl Multigrid {
         params.check()?;
         let (frame, mut a, mut inverse) = Frame::new(matrix, scaling, params)?;
         let coarse = Coarse::trivial()?;
-        let mut multigrid =
-            Self { levels: Vec::new(), coarse, frame, params: *params, info: HierarchyInfo::default() };
+        let mut multigrid = Self {
+            levels: Vec::new(),
+            coarse,
+            frame,
+            params: *params,
+            info: HierarchyInfo::default(),
+            drift: Drift::default(),
+        };
         multigrid.start(&a);
         let mut kept = multigrid.frame.kept(&a, &inverse, params.keep);
         while a.n() > params.coarsest && multigrid.levels.len() + 1 < MAX_LEVELS {
@@ -119,18 +130,28 @@ impl Multigrid {
     }
 
     /// The same levels for a matrix of the same pattern with other values: prolongation and restriction stay, coarse matrices
-    /// and smoothers are computed anew. For matrices that change little, as those of time steps do.
+    /// and smoothers are computed anew. For matrices that change little, as those of time steps do. Where rows have changed their
+    /// shapes since the levels were made, as by an interface that has moved, these are made anew.
     ///
     /// # Errors
     /// A matrix of another size; those of [`Multigrid::new`].
     pub fn refresh(&mut self, matrix: Arc<Csr>) -> Result<(), SolveError> {
-        self.refresh_rows(Arc::new(DifferenceMatrix::from_csr(&matrix)?))
+        let rows = Arc::new(DifferenceMatrix::from_csr(&matrix)?);
+        if !self.refresh_rows(&rows)? {
+            *self = Self::of(rows, self.frame.scaling(), &self.params)?;
+        }
+        Ok(())
     }
 
-    pub(crate) fn refresh_rows(&mut self, matrix: Arc<DifferenceMatrix>) -> Result<(), SolveError> {
+    /// The same; false, with nothing done, where the levels have to be made anew.
+    pub(crate) fn refresh_rows(&mut self, matrix: &Arc<DifferenceMatrix>) -> Result<bool, SolveError> {
         let n = self.info.levels.first().map_or(0, |l| l.0);
         MatrixError::check_length("rows of the matrix", matrix.n(), n)?;
-        let mut a = self.frame.matrix(matrix)?;
+        let mut a = self.frame.matrix(Arc::clone(matrix))?;
+        let fits = self.levels.first().is_some_and(|finest| !self.drift.is_too_far(&finest.a, &a));
+        if !fits {
+            return Ok(false);
+        }
         let old = std::mem::take(&mut self.levels);
         self.start(&a);
         for level in old {
@@ -139,7 +160,7 @@ impl Multigrid {
             a = self.add_level(a, inverse, level.p, level.r, coarse)?;
         }
         self.coarse = Coarse::new(&a, self.params.coarsest)?;
-        Ok(())
+        Ok(true)
     }
 
     fn start(&mut self, a: &DifferenceMatrix) {
@@ -243,8 +264,7 @@ impl Preconditioner for Multigrid {
     }
 
     fn refresh(&mut self, matrix: &Arc<Csr>) -> Result<bool, SolveError> {
-        Self::refresh(self, Arc::clone(matrix))?;
-        Ok(true)
+        self.refresh_rows(&Arc::new(DifferenceMatrix::from_csr(matrix)?))
     }
 
     fn hierarchy(&self) -> Option<&HierarchyInfo> {

@@ -6,7 +6,9 @@ use super::krylov::{Method, Residuals, iterate};
 use super::scaling::Scaled;
 use super::{AUTO_RESTART, Levels, SolveError, SolveInfo, SolverParams};
 use crate::difference::{DifferenceMatrix, ScaledRows};
-use crate::multigrid::{CycleKind, HierarchyInfo, Multigrid, MultigridParams, Scaling};
+use crate::multigrid::{
+    HierarchyInfo, Multigrid, MultigridParams, Restriction, Scaling, SmootherKind, is_convective,
+};
 use crate::precond::{IncompleteLu, Preconditioner, PreconditionerKind, ilu0};
 use crate::vector::axpy;
 use std::sync::{Arc, OnceLock};
@@ -17,11 +19,17 @@ pub(crate) const PATIENCE: usize = 40;
 /// What steps in.
 const SUBSTITUTE: Method = Method::BiCgStab { l: 2 };
 
-/// The levels that are asked for.
-pub(crate) fn levels_of(params: &SolverParams) -> MultigridParams {
+/// The levels that are asked for; where none are, those that suit the matrix: incomplete factors and a restriction of its own for
+/// convection, on which the default levels stagnate.
+pub(crate) fn levels_of(rows: &DifferenceMatrix, params: &SolverParams) -> MultigridParams {
     match params.preconditioner {
         PreconditionerKind::Multigrid(levels) => levels,
-        _ => MultigridParams { cycle: CycleKind::W, ..MultigridParams::default() },
+        _ if is_convective(rows) => MultigridParams {
+            smoother: SmootherKind::Ilu0,
+            restriction: Restriction::Own,
+            ..MultigridParams::default()
+        },
+        _ => MultigridParams::default(),
     }
 }
 
@@ -54,7 +62,7 @@ impl Chain {
         let scaling = Scaling { rows: Arc::clone(&factors), ..Scaling::default() };
         let (substitute, direct) = (OnceLock::new(), OnceLock::new());
         let mut chain = Self { rows, factors, multigrid: None, substitute, direct };
-        match Multigrid::of(Arc::clone(&chain.rows), scaling, &levels_of(params)) {
+        match Multigrid::of(Arc::clone(&chain.rows), scaling, &levels_of(&chain.rows, params)) {
             Ok(multigrid) => chain.multigrid = Some(multigrid),
             // A coarsest level that cannot be factorised, or whose entries overflow.
             Err(SolveError::Singular { .. } | SolveError::Matrix(_)) => {
@@ -74,15 +82,27 @@ impl Chain {
         self.rows.n()
     }
 
-    /// Other values in the same pattern: the levels stay, and multigrid gets another chance. Rows keep their factors, so that sums
-    /// over rows keep their meaning.
-    pub(crate) fn refresh(&mut self, rows: Arc<DifferenceMatrix>) -> Result<(), SolveError> {
+    /// Other values in the same pattern: the levels stay as long as they fit, and multigrid gets another chance. With the levels rows
+    /// keep their factors, so that sums over rows keep their meaning.
+    pub(crate) fn refresh(
+        &mut self,
+        rows: Arc<DifferenceMatrix>,
+        params: &SolverParams,
+    ) -> Result<(), SolveError> {
+        let stale = match &mut self.multigrid {
+            Some(multigrid) => !multigrid.refresh_rows(&rows)?,
+            None => false,
+        };
+        if stale {
+            let factors = rows.balancing_factors();
+            *self = Self::new(rows, factors, params)?;
+            return Ok(());
+        }
         self.rows = rows;
         self.direct = OnceLock::new();
         self.substitute = OnceLock::new();
-        match &mut self.multigrid {
-            Some(multigrid) => multigrid.refresh_rows(Arc::clone(&self.rows))?,
-            None => self.substitute = OnceLock::from(ilu0(&self.scaled().to_csr())?),
+        if self.multigrid.is_none() {
+            self.substitute = OnceLock::from(ilu0(&self.scaled().to_csr())?);
         }
         Ok(())
     }

@@ -45,8 +45,9 @@ pub enum SolverKind {
     /// Sparse factorisation, `L L^T` of a symmetric matrix with a positive diagonal that has one and `L U`
     /// otherwise, with iterative refinement.
     Direct,
-    /// GMRES with [`AUTO_RESTART`] vectors, preconditioned by multigrid (with the parameters of
-    /// [`SolverParams::preconditioner`], if it is multigrid). A matrix that multigrid does not get along with is left
+    /// GMRES with [`AUTO_RESTART`] vectors, preconditioned by multigrid: with the parameters of
+    /// [`SolverParams::preconditioner`], if it is multigrid, else by the default levels, or, where convection outweighs diffusion, by
+    /// levels with [`SmootherKind::Ilu0`](crate::SmootherKind::Ilu0) and [`Restriction::Own`](crate::Restriction::Own). A matrix that multigrid does not get along with is left
     /// to BiCGStab(2) with ILU(0), and so are all further right-hand sides.
     Multigrid,
     /// BiCGStab(l), Sleijpen and Fokkema, ETNA 1 (1993): short recurrences, `2 l` products in a step, for any matrix.

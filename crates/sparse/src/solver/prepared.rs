@@ -156,7 +156,7 @@ impl Prepared {
     }
 
     /// Prepares for a matrix of the same pattern with other values. Multigrid keeps its levels and computes their matrices
-    /// anew, which is a fraction of its set-up; all else is built again.
+    /// anew, which is a fraction of its set-up, as long as the rows keep their shapes; all else is built again.
     ///
     /// # Errors
     /// Those of [`Prepared::new`]. What was prepared before is lost then.
@@ -173,7 +173,7 @@ impl Prepared {
                 kept
             }
             Engine::Multigrid(chain) => {
-                chain.refresh(Arc::new(DifferenceMatrix::from_csr(matrix)?))?;
+                chain.refresh(Arc::new(DifferenceMatrix::from_csr(matrix)?), &self.params)?;
                 true
             }
         };
