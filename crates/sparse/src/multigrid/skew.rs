@@ -7,7 +7,7 @@ use crate::parallel;
 const SAMPLE: usize = 4096;
 
 /// What of the sizes of entries is not mirrored, in the mean over rows, from which on a matrix is convective. Upwind differences of
-/// cell Péclet numbers P have P / (2 + P); stencils on irregular clouds stay below 0.2 (`docs/multigrid.md`).
+/// cell Péclet numbers P have P / (2 + P); stencils on irregular clouds stay below 0.3 (`docs/multigrid.md`).
 const CONVECTIVE: f64 = 0.4;
 
 /// Whether entries and their mirror images differ as they do for upwind differences of cell Péclet numbers beyond about 3. Entries are
