@@ -150,6 +150,29 @@ fn data_that_change_are_exact_for_every_method() {
     assert!(errors.iter().all(|(_, error)| *error < 1e-9), "{errors:?}");
 }
 
+/// A disc in a square whose second part has this diffusivity.
+fn disc(spacing: f64, contrast: f64, tolerance: f64) -> String {
+    composite(2, spacing, contrast, tolerance)
+        .replace("level_set = \"x - 0.4\"", "level_set = \"sqrt((x - 0.47)^2 + (y - 0.52)^2) - 0.27\"")
+}
+
+/// A stiff disc whose diffusivity is smeared over its rim: those rows have a mode that grows, which must not pass for a solution.
+#[test]
+fn what_grows_by_itself_is_said() {
+    let text = disc(0.09, 1e-6, 1e-3);
+    let error = solve_with(&text, MethodName::GfdmClassical).expect_err("it grows").to_string();
+    assert!(error.contains("grows by itself") && error.contains("gfdm-conservative"), "{error}");
+    solve_with(&text, MethodName::GfdmConservative).expect("balances let nothing grow");
+}
+
+/// The condition at a node of the insulated side gives the node hardly any weight there, so that its value is some hundred times those
+/// of its neighbours: that is no growth.
+#[test]
+fn what_follows_from_others_does_not_grow() {
+    let text = disc(0.11, 10.0, 1e-5).replace("seed = 1", "seed = 1\nlayout = \"scattered\"");
+    solve_with(&text, MethodName::ParticleDifference).expect("all eigenvalues have the right sign");
+}
+
 /// Stops when a time has been reached.
 struct Until(f64);
 
@@ -185,7 +208,7 @@ fn a_stopped_run_goes_on_to_the_same_result() {
     let other = Scene::parse(&text.replace("end = 0.4", "end = 0.5"), "slab.toml").expect("it parses");
     let refused = execute_from(&other, &plan, Some(&checkpoint), &mut Silent);
     assert!(matches!(&refused, Err(e @ Error::Checkpoint { .. }) if e.to_string().contains("another scene")));
-    std::fs::write(&checkpoint.path, "meshless checkpoint 1\n").expect("written");
+    std::fs::write(&checkpoint.path, "meshless checkpoint 2\n").expect("written");
     assert!(matches!(
         execute_from(&scene, &plan, Some(&checkpoint), &mut Silent),
         Err(Error::Checkpoint { .. })

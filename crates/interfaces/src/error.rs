@@ -70,6 +70,22 @@ pub enum MethodError {
         /// A spacing that resolves it.
         spacing: f64,
     },
+    /// Rows of a method in time that let something grow.
+    #[error(
+        "since t = {since} something grows by itself, {growth:.1e}-fold by t = {t} and most near {position:?}: on this cloud the rows have a \
+         mode that grows where diffusion lets all decay; take gfdm-conservative or gfdm-hybrid, or another cloud (`seed`, `layout`, \
+         `spacing` in [points])"
+    )]
+    Grows {
+        /// When it was found.
+        t: f64,
+        /// When it began.
+        since: f64,
+        /// Size over that at the beginning.
+        growth: f64,
+        /// Where it is largest.
+        position: Vec<f64>,
+    },
     /// A Voronoi cell could not be closed.
     #[error("no Voronoi cell at node {node} (near {position:?}): {source}")]
     Cell {

@@ -42,6 +42,21 @@ pub enum StepError<E: std::error::Error> {
         /// Time reached.
         t: f64,
     },
+    /// The system lets something grow by itself.
+    #[error(
+        "since t = {since} a mode has grown {growth:.1e}-fold by itself by t = {t}, most of it at unknown {place}: the system lets \
+         something grow where diffusion lets all decay"
+    )]
+    Grows {
+        /// When it was found.
+        t: f64,
+        /// When it began.
+        since: f64,
+        /// Size over that at the beginning.
+        growth: f64,
+        /// The unknown at which the mode is largest.
+        place: usize,
+    },
     /// The solution is not a number any more.
     #[error("the solution is not finite at t = {t}")]
     NotFinite {

@@ -10,6 +10,11 @@
 //! 2, L-stable, stiffly accurate, with an embedded error estimate of order 3. Both implicit stages have the same matrix
 //! `M / c + A`, and the step size changes seldom, so that a factorisation serves many steps.
 //!
+//! Rows that were made for their accuracy may have modes that grow where those of diffusion decay, and a solution that follows them
+//! looks as smooth as any. So eigenvalues of a step are looked for beside the steps, and a run ends where by the steps taken a mode has grown a
+//! hundredfold: [`StepError::Grows`]. That takes a few more solves for every matrix; [`Semidiscrete::may_grow`] saves them where
+//! rows are known to be harmless.
+//!
 //! ```
 //! use meshless_time::{Params, Semidiscrete, Stepper};
 //!
@@ -41,7 +46,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod complex;
 mod error;
+mod growth;
+mod hessenberg;
+mod krylov;
 mod params;
 mod state;
 mod stepper;
@@ -49,6 +58,7 @@ mod system;
 mod tableau;
 
 pub use error::StepError;
+pub use growth::{Past, Spell};
 pub use params::Params;
 pub use state::State;
 pub use stepper::Stepper;

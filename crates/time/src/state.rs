@@ -1,6 +1,9 @@
 //! Where an integration stands.
 
+use crate::Past;
+
 /// Everything that the next step depends on: a run that goes on from it takes the same steps, bit for bit.
+/// (What grows may be told some steps earlier or later.)
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Time.
@@ -17,4 +20,6 @@ pub struct State {
     pub steps: usize,
     /// Steps that were tried and rejected.
     pub rejected: usize,
+    /// What growth is told by.
+    pub past: Past,
 }

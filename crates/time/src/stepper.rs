@@ -1,7 +1,8 @@
 //! The time loop.
 
+use crate::growth::{Taken, Watch};
 use crate::tableau::{DIAGONAL, ERROR, GAMMA, WEIGHT};
-use crate::{Params, Semidiscrete, State, StepError};
+use crate::{Params, Past, Semidiscrete, State, StepError};
 
 /// Part of the largest step allowed by the error that is taken.
 const SAFETY: f64 = 0.85;
@@ -35,6 +36,9 @@ pub struct Stepper<S> {
     state: State,
     /// When the run was last started anew.
     started: f64,
+    watch: Watch,
+    /// Changes of the system that the watch knows of.
+    changes: usize,
 }
 
 /// A tried step.
@@ -53,8 +57,10 @@ impl<S: Semidiscrete> Stepper<S> {
     pub fn new(system: S, t: f64, u: Vec<f64>, params: Params) -> Result<Self, StepError<S::Error>> {
         check(&params, t, &u)?;
         let slope = vec![0.0; u.len()];
-        let state = State { t, step: 0.0, u, slope, scale: 0.0, steps: 0, rejected: 0 };
-        let mut stepper = Self { system, params, state, started: t };
+        let past = Past::default();
+        let state = State { t, step: 0.0, u, slope, scale: 0.0, steps: 0, rejected: 0, past };
+        let (watch, changes) = (Watch::default(), 0);
+        let mut stepper = Self { system, params, state, started: t, watch, changes };
         stepper.start(t).map_err(|source| StepError::System { t, source })?;
         Ok(stepper)
     }
@@ -72,7 +78,8 @@ impl<S: Semidiscrete> Stepper<S> {
 
     /// Goes on from a state that was kept.
     pub fn resume(system: S, state: State, params: Params) -> Self {
-        Self { system, params, state, started: f64::NEG_INFINITY }
+        let changes = system.changes();
+        Self { system, params, state, started: f64::NEG_INFINITY, watch: Watch::default(), changes }
     }
 
     /// Where the integration stands.
@@ -104,7 +111,8 @@ impl<S: Semidiscrete> Stepper<S> {
     /// Takes one step towards `end`, and no farther. Does nothing at `end`.
     ///
     /// # Errors
-    /// [`StepError::TooSmall`] and [`StepError::TooMany`] where the tolerance cannot be reached, those of the system.
+    /// [`StepError::TooSmall`] and [`StepError::TooMany`] where the tolerance cannot be reached, [`StepError::Grows`] where
+    /// the system lets disturbances grow, those of the system.
     pub fn step(&mut self, end: f64) -> Result<(), StepError<S::Error>> {
         if self.state.t >= end {
             return Ok(());
@@ -152,7 +160,34 @@ impl<S: Semidiscrete> Stepper<S> {
             self.state.u = trial.u;
             self.state.slope = trial.slope;
             self.state.steps += 1;
+            return self.look_for_growth(t, step);
+        }
+    }
+
+    /// Whether the step that was taken from `since` lets something grow, or has let it.
+    fn look_for_growth(&mut self, since: f64, step: f64) -> Result<(), StepError<S::Error>> {
+        if !self.system.may_grow() {
             return Ok(());
+        }
+        let changes = self.system.changes();
+        let taken = Taken { since, step, changed: changes != self.changes };
+        self.changes = changes;
+        let (system, t, c) = (&mut self.system, self.state.t, DIAGONAL * step);
+        let algebraic = system.algebraic(self.state.u.len());
+        let weights = || algebraic.iter().map(|&a| f64::from(u8::from(!a))).collect();
+        let apply = |e: &mut [f64], clean: bool| match clean {
+            true => system.damp(t, c, e),
+            false => system.decay(t, c, e),
+        };
+        let grown = self.watch.take(&mut self.state.past, taken, &weights, apply);
+        match grown.map_err(|source| StepError::System { t, source })? {
+            Some(grown) => Err(StepError::Grows {
+                t,
+                since: grown.since,
+                growth: grown.growth.exp(),
+                place: grown.place,
+            }),
+            None => Ok(()),
         }
     }
 

@@ -33,6 +33,31 @@ pub trait Semidiscrete {
     /// Those of the linear solver.
     fn damp(&mut self, t: f64, c: f64, e: &mut [f64]) -> Result<(), Self::Error>;
 
+    /// The same for values that fulfil the algebraic rows, which count for the others then: `M (x - e) / c + A(t) x = 0`. No different where M
+    /// is diagonal.
+    ///
+    /// # Errors
+    /// Those of the linear solver.
+    fn decay(&mut self, t: f64, c: f64, e: &mut [f64]) -> Result<(), Self::Error> {
+        self.damp(t, c, e)
+    }
+
+    /// Which of the unknowns have no du/dt: prescribed values, and what follows from others.
+    fn algebraic(&self, unknowns: usize) -> Vec<bool> {
+        vec![false; unknowns]
+    }
+
+    /// How often M or A has changed so far.
+    fn changes(&self) -> usize {
+        0
+    }
+
+    /// Whether to look for what grows by itself: no need where the rows themselves say that nothing does, as those of an M-matrix
+    /// do, and no use where the equation wants some to.
+    fn may_grow(&self) -> bool {
+        true
+    }
+
     /// The norm in which errors are measured, best one that does not depend on the number of unknowns: the root of a
     /// mean square weighted by volumes.
     fn norm(&self, e: &[f64]) -> f64;

@@ -14,8 +14,8 @@ pub(super) const DECAY: f64 = 3.5;
 /// Weight of the rows of boundary conditions on the flux.
 const BOUNDARY_WEIGHT: f64 = 10.0;
 
-/// Least weight of a soft part beside a stiff one in units of the flux: it has to determine its own polynomial still.
-const LEAST_HEARD: f64 = 1e-3;
+/// Least weight of a soft part beside a stiff one in units of the energy: it has to determine its own polynomial still.
+const LEAST_HEARD: f64 = 1e-6;
 
 /// Pivots below this part of the largest count as none (Golub & Van Loan, section 5.4).
 pub(super) const RANK_TOLERANCE: f64 = 1e-12;
@@ -236,11 +236,13 @@ impl<const D: usize> Fit<D> {
         let conductance =
             |j: usize| maker.problem.eta[j] * maker.unknowns.scale[maker.unknowns.part[j] as usize];
         let stiffest = match stencil.heard {
-            Heard::UnitsOfFlux => stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(conductance(j as usize))),
+            Heard::UnitsOfEnergy => {
+                stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(conductance(j as usize)))
+            }
             Heard::All | Heard::OwnPart => 0.0,
         };
         let louder = |j: usize| match stiffest > 0.0 {
-            true => (conductance(j) / stiffest).max(LEAST_HEARD),
+            true => (conductance(j) / stiffest).sqrt().max(LEAST_HEARD),
             false => 1.0,
         };
         self.given.resize(nodes, Given::default());

@@ -16,16 +16,16 @@ pub(super) enum Heard {
     /// All of them alike.
     #[default]
     All,
-    /// Misfits in units of the flux: a node of a soft part that almost lies on a stiff one follows that, and is not carried
+    /// Misfits in units of the energy: a node of a soft part that almost lies on a stiff one follows that, and is not carried
     /// on from its own side.
-    UnitsOfFlux,
+    UnitsOfEnergy,
     /// Those of the own part alone, without interfaces.
     OwnPart,
 }
 
 impl Heard {
     /// What is tried in time, in this order.
-    pub(super) const IN_TIME: [Self; 3] = [Self::All, Self::UnitsOfFlux, Self::OwnPart];
+    pub(super) const IN_TIME: [Self; 3] = [Self::All, Self::UnitsOfEnergy, Self::OwnPart];
 }
 
 /// A stencil.

@@ -5,6 +5,9 @@ use meshless_sparse::DifferenceMatrix;
 use crate::method::SplitRows;
 use crate::{Discretization, MethodError, RowKind};
 
+/// Off-diagonal entries of the wrong sign below this part of a row are rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// M of a discretisation.
 #[derive(Debug, Clone)]
 pub enum Mass {
@@ -67,6 +70,27 @@ impl Mass {
                 out
             }
         }
+    }
+
+    /// A rate that nothing without data grows faster than in the maximum norm: what the off-diagonal entries of a row are more than the
+    /// diagonal one, over its mass. `None` where that says nothing: M is not diagonal, or a row without du/dt is not dominated by
+    /// its diagonal.
+    pub fn growth_bound(&self, discretization: &Discretization) -> Option<f64> {
+        let (Self::Diagonal(mass), rows, None) = (self, &discretization.rows, &discretization.constants)
+        else {
+            return None;
+        };
+        let mut bound = 0.0_f64;
+        for (i, &mass) in mass.iter().enumerate() {
+            let off = rows.row(i).1;
+            let excess = off.iter().map(|a| a.abs() + a).sum::<f64>() - rows.row_sum(i);
+            if mass > 0.0 {
+                bound = bound.max(excess / mass);
+            } else if excess > ROUNDING * off.iter().map(|a| a.abs()).sum::<f64>() {
+                return None;
+            }
+        }
+        Some(bound)
     }
 
     /// `M / c + A` in difference form, with the columns of the constants where the rows have any: a mass goes to the sums of

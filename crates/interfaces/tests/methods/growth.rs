@@ -104,31 +104,10 @@ fn balances_bound_growth() {
     let setup = contact::<2>(wall, Layout::Irregular, 0.09, 1, 1e6);
     let bound = |params| {
         let rows = setup.discretize(params);
-        growth_bound(&rows)
+        Mass::of(&rows).unwrap().growth_bound(&rows)
     };
     let balances = bound(GfdmParams::conservative()).unwrap();
     // Rates reach 1e6 over the square of the spacing, 1e8; rounding of them is what is left.
     assert!(balances.abs() < 1e-6, "{balances:e}");
     assert!(bound(GfdmParams::classical()).is_none_or(|rate| rate > 1.0));
-}
-
-/// A rate that nothing without data grows faster than in the maximum norm: what the off-diagonal entries of a row are more than the
-/// diagonal one, over its mass. `None` where that says nothing: M is not diagonal, or a row without du/dt is not dominated by its
-/// diagonal.
-fn growth_bound(discretization: &Discretization) -> Option<f64> {
-    /// Off-diagonal entries of the wrong sign below this part of a row are rounding.
-    const ROUNDING: f64 = 1e-12;
-    let Discretization { rows, constants: None, .. } = discretization else { return None };
-    let Mass::Diagonal(mass) = Mass::of(discretization).unwrap() else { return None };
-    let mut bound = 0.0_f64;
-    for (i, &mass) in mass.iter().enumerate() {
-        let off = rows.row(i).1;
-        let excess = off.iter().map(|a| a.abs() + a).sum::<f64>() - rows.row_sum(i);
-        if mass > 0.0 {
-            bound = bound.max(excess / mass);
-        } else if excess > ROUNDING * off.iter().map(|a| a.abs()).sum::<f64>() {
-            return None;
-        }
-    }
-    Some(bound)
 }

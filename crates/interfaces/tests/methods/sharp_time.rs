@@ -58,16 +58,17 @@ fn nothing_grows_at_a_contact_of_any_contrast() {
             }
         }
     }
-    for contrast in [1e-6, 1e-2, 1e2, 1e6] {
-        let wall = Shape::half_space([0.4, 0.5], [1.0, 0.0]).unwrap();
-        for (layout, seed) in
-            (1..=3).flat_map(|seed| [Layout::Irregular, Layout::Jittered].map(|layout| (layout, seed)))
-        {
-            let setup = contact::<2>(wall.clone(), layout, 0.11, seed, contrast);
-            let rows = sharp(4).discretize(&setup.problem()).unwrap();
-            let algebraic = Mass::of(&rows).unwrap().algebraic().count();
-            let what = format!("2-D, order 4, {contrast:e}, {layout:?}, seed {seed}");
-            look(largest_growth(&setup, &rows, 0.11, contrast), algebraic, what);
+    let wall = Shape::half_space([0.4, 0.5], [1.0, 0.0]).unwrap();
+    let disc = Shape::ball([0.47, 0.52], 0.27).unwrap();
+    for contrast in [1e-10, 1e-6, 1e-2, 1e2, 1e6, 1e10] {
+        for layout in [Layout::Irregular, Layout::Jittered, Layout::Scattered] {
+            for (kind, shape, seed) in [("wall", &wall, 1), ("wall", &wall, 6), ("disc", &disc, 1)] {
+                let setup = contact::<2>(shape.clone(), layout, 0.11, seed, contrast);
+                let rows = sharp(4).discretize(&setup.problem()).unwrap();
+                let algebraic = Mass::of(&rows).unwrap().algebraic().count();
+                let what = format!("2-D, {kind}, order 4, {contrast:e}, {layout:?}, seed {seed}");
+                look(largest_growth(&setup, &rows, 0.11, contrast), algebraic, what);
+            }
         }
     }
     assert!(found.is_empty(), "{found:#?}");

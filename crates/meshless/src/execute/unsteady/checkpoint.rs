@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use meshless_output::write_text_atomically;
-use meshless_time::State;
+use meshless_time::{Past, Spell, State};
 
 use super::Frame;
 use crate::Error;
@@ -13,7 +13,7 @@ use crate::plan::Plan;
 use crate::scene::Scene;
 
 /// First line of the file.
-const HEADER: &str = "meshless checkpoint 1";
+const HEADER: &str = "meshless checkpoint 2";
 
 /// Where a run leaves what it has reached, and how often.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl Checkpoint {
         state: &State,
         frames: &[Frame],
     ) -> Result<(), Error> {
-        let State { t, step, u, slope, scale, steps, rejected } = state;
+        let State { t, step, u, slope, scale, steps, rejected, past } = state;
         let mut text = format!("{HEADER}\n{}\n{steps} {rejected} {}\n", digest(scene, plan), frames.len());
         let mut line = |values: &mut dyn Iterator<Item = f64>| {
             for value in values {
@@ -69,9 +69,11 @@ impl Checkpoint {
             }
             text.push('\n');
         };
-        line(&mut [*t, *step, *scale].into_iter());
+        line(&mut [*t, *step, *scale, past.before, past.since].into_iter());
         line(&mut u.iter().copied());
         line(&mut slope.iter().copied());
+        line(&mut past.disturbance.iter().copied());
+        line(&mut past.spells.iter().flat_map(|spell| [spell.since, spell.step, spell.count]));
         for frame in frames {
             line(&mut std::iter::once(frame.t).chain(frame.u.iter().copied()));
         }
@@ -100,8 +102,11 @@ fn parse<'a>(lines: &mut impl Iterator<Item = &'a str>) -> Option<Kept> {
         let bits = |word: &str| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
         lines.next()?.split_whitespace().map(bits).collect()
     };
-    let [t, step, scale] = numbers()?[..] else { return None };
-    let (u, slope) = (numbers()?, numbers()?);
+    let [t, step, scale, before, since] = numbers()?[..] else { return None };
+    let (u, slope, disturbance, spells) = (numbers()?, numbers()?, numbers()?, numbers()?);
+    let spell = |&[since, step, count]: &[f64; 3]| Spell { since, step, count };
+    let (spells, rest) = spells.as_chunks();
+    let past = Past { disturbance, before, since, spells: spells.iter().map(spell).collect() };
     let mut frames = Vec::with_capacity(count);
     for _ in 0..count {
         let mut values = numbers()?;
@@ -110,6 +115,10 @@ fn parse<'a>(lines: &mut impl Iterator<Item = &'a str>) -> Option<Kept> {
         }
         frames.push(Frame { t: values.remove(0), u: values });
     }
-    let complete = lines.next()? == "end" && slope.len() == u.len();
-    complete.then_some(Kept { state: State { t, step, u, slope, scale, steps, rejected }, frames })
+    let complete = lines.next()? == "end"
+        && slope.len() == u.len()
+        && (past.disturbance.is_empty() || past.disturbance.len() == u.len())
+        && rest.is_empty();
+    let state = State { t, step, u, slope, scale, steps, rejected, past };
+    complete.then_some(Kept { state, frames })
 }

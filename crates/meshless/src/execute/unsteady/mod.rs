@@ -5,7 +5,7 @@ mod system;
 
 use std::time::Instant;
 
-use meshless_interfaces::SystemSolution;
+use meshless_interfaces::{MethodError, SystemSolution};
 use meshless_time::{Params, StepError, Stepper};
 
 use super::{Discrete, Progress, Solved};
@@ -77,7 +77,8 @@ fn started<'a, const D: usize>(
         return Ok((Stepper::resume(heat, kept.state, params), kept.frames));
     }
     let start = initial(time, &heat)?;
-    Ok((Stepper::new(heat, 0.0, start, params).map_err(explain)?, Vec::new()))
+    let started = Stepper::new(heat, 0.0, start, params);
+    Ok((started.map_err(|error| explain::<D>(error, None))?, Vec::new()))
 }
 
 impl<const D: usize> Run<'_, D> {
@@ -92,7 +93,8 @@ impl<const D: usize> Run<'_, D> {
                 self.save()?;
                 return Err(Error::Stopped { t });
             }
-            self.stepper.step(target).map_err(explain)?;
+            let taken = self.stepper.step(target);
+            taken.map_err(|error| explain(error, Some(self.stepper.system())))?;
             if self.checkpoint.is_some_and(|c| self.saved.elapsed() >= c.every) {
                 self.save()?;
                 self.saved = Instant::now();
@@ -156,9 +158,12 @@ fn initial<const D: usize>(time: &TimeSpec, heat: &Heat<'_, D>) -> Result<Vec<f6
 }
 
 /// Errors of the solve as they are; those of the steps in words.
-fn explain(error: StepError<Error>) -> Error {
-    match error {
-        StepError::System { source, .. } => source,
-        other => Error::Time(other.to_string()),
+fn explain<const D: usize>(error: StepError<Error>, heat: Option<&Heat<'_, D>>) -> Error {
+    match (error, heat) {
+        (StepError::System { source, .. }, _) => source,
+        (StepError::Grows { t, since, growth, place }, Some(heat)) => {
+            MethodError::Grows { t, since, growth, position: heat.position(place) }.into()
+        }
+        (other, _) => Error::Time(other.to_string()),
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use meshless_interfaces::{
-    Discretization, Mass, Method, PreparedSystem, RowKind, SplitValues, SystemParams, residual,
+    Condition, Discretization, Mass, Method, PreparedSystem, RowKind, SplitValues, SystemParams, residual,
 };
 use meshless_sparse::SolveInfo;
 use meshless_time::Semidiscrete;
@@ -28,6 +28,10 @@ pub(super) struct Heat<'a, const D: usize> {
     now: Scene,
     discretization: Discretization,
     mass: Mass,
+    /// Whether disturbances may grow by themselves, for all that the rows say.
+    may_grow: bool,
+    /// How often M or A has changed.
+    changes: usize,
     prepared: Option<Matrix>,
     info: Option<SolveInfo>,
     /// The unknowns of the last stage, where a method splits off constants itself.
@@ -58,6 +62,7 @@ impl<'a, const D: usize> Heat<'a, D> {
         let mut seconds = Seconds::default();
         let discretization = discretize(scene, &discrete, &*method, &mut seconds)?;
         let mass = Mass::of(&discretization)?;
+        let may_grow = may_grow(scene, &discrete, &discretization, &mass);
         Ok(Self {
             scene,
             plan,
@@ -67,6 +72,8 @@ impl<'a, const D: usize> Heat<'a, D> {
             now: scene.at_time(0.0),
             discretization,
             mass,
+            may_grow,
+            changes: 0,
             prepared: None,
             info: None,
             split: None,
@@ -86,6 +93,17 @@ impl<'a, const D: usize> Heat<'a, D> {
 
     pub(super) fn discrete(&self) -> &Discrete<D> {
         &self.discrete
+    }
+
+    /// Where an unknown is.
+    pub(super) fn position(&self, unknown: usize) -> Vec<f64> {
+        let further =
+            unknown.checked_sub(self.nodes()).and_then(|i| self.discretization.interface_points.get(i));
+        match (self.discrete.cloud.points().get(unknown), further) {
+            (_, Some(point)) => point.at.clone(),
+            (Some(point), None) => point.to_vec(),
+            (None, None) => Vec::new(),
+        }
     }
 
     /// The discretisation at `end`, how the last system was solved, and what it took.
@@ -118,6 +136,8 @@ impl<'a, const D: usize> Heat<'a, D> {
         self.now = scene;
         if changed.matrix {
             self.mass = Mass::of(&self.discretization)?;
+            self.changes += 1;
+            self.may_grow = may_grow(&self.now, &self.discrete, &self.discretization, &self.mass);
             self.prepared = None;
         }
         Ok(())
@@ -194,6 +214,22 @@ const RATE_STEP: f64 = 1e-7;
 /// A step size for a solve of which only the report is wanted.
 const DEFAULT_C: f64 = 1.0;
 
+/// Growth over the whole time that is none.
+const NO_GROWTH: f64 = 0.1;
+
+/// Whether rows may let something grow that the equation does not. What is taken up from outside the more the larger u is, does.
+fn may_grow<const D: usize>(
+    scene: &Scene,
+    discrete: &Discrete<D>,
+    discretization: &Discretization,
+    mass: &Mass,
+) -> bool {
+    let end = scene.time.as_ref().map_or(0.0, |time| time.end);
+    let feeds = |c: &Condition| matches!(c, Condition::Robin { a, b, .. } if a * b < 0.0);
+    let bounded = mass.growth_bound(discretization).is_some_and(|rate| rate * end <= NO_GROWTH);
+    !bounded && !discrete.problem().conditions.iter().flatten().any(feeds)
+}
+
 fn discretize<const D: usize>(
     scene: &Scene,
     discrete: &Discrete<D>,
@@ -248,9 +284,32 @@ impl<const D: usize> Semidiscrete for Heat<'_, D> {
         self.mass.algebraic().for_each(|i| e[i] = 0.0);
         let kinds = self.discretization.kinds.iter();
         e.iter_mut().zip(kinds).filter(|(_, k)| **k == RowKind::Dirichlet).for_each(|(e, _)| *e = 0.0);
+        self.decay(t, c, e)
+    }
+
+    fn decay(&mut self, t: f64, c: f64, e: &mut [f64]) -> Result<(), Error> {
+        self.move_to(t)?;
         let rhs: Vec<f64> = self.mass.times(e).into_iter().map(|m| m / c).collect();
         e.copy_from_slice(&self.solve_for(c, &rhs)?.0);
         Ok(())
+    }
+
+    fn algebraic(&self, unknowns: usize) -> Vec<bool> {
+        let mut algebraic = match &self.mass {
+            Mass::Diagonal(mass) => mass.iter().map(|&m| m == 0.0).collect(),
+            Mass::Rows(_) => self.prescribed(),
+        };
+        self.mass.algebraic().for_each(|i| algebraic[i] = true);
+        algebraic.resize(unknowns, true);
+        algebraic
+    }
+
+    fn changes(&self) -> usize {
+        self.changes
+    }
+
+    fn may_grow(&self) -> bool {
+        self.may_grow
     }
 
     fn norm(&self, e: &[f64]) -> f64 {
