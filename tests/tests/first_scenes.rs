@@ -261,3 +261,37 @@ fn stiff_regions_that_touch_are_said_and_have_no_estimate() {
         assert!(report.contacts.is_empty() && report.estimate.l2.is_some(), "{:?}", report.contacts);
     }
 }
+
+/// On a face of several pieces a `where` that holds on one of them says nothing of the others, at the edge between them either.
+#[test]
+fn the_order_of_conditions_on_a_cylinder_does_not_matter_at_its_rim() {
+    let caps = "[[boundaries]]\nface = \"outer\"\nwhere = \"z < 1e-9\"\nneumann = 0\n\
+                [[boundaries]]\nface = \"outer\"\nwhere = \"z > 1 - 1e-9\"\nneumann = 0\n\
+                [[boundaries]]\nface = \"outer\"\ndirichlet = 0\n";
+    let mantle = "[[boundaries]]\nface = \"outer\"\nwhere = \"x^2 + y^2 > 1 - 1e-9\"\ndirichlet = 0\n\
+                  [[boundaries]]\nface = \"outer\"\nneumann = 0\n";
+    let errors = [caps, mantle].map(|boundaries| {
+        let text = format!(
+            "title = \"Rod\"\ndimension = 3\n\
+             [domain]\ncylinder = {{ point = [0, 0, 0.5], axis = [0, 0, 1], radius = 1, length = 1 }}\n\
+             [points]\nspacing = 0.15\n[[regions]]\nname = \"core\"\n\
+             cylinder = {{ point = [0, 0, 0.5], axis = [0, 0, 1], radius = 0.5 }}\ndiffusivity = 10\nsource = 4\n\
+             exact = \"(0.25 - x^2 - y^2)/10 + 0.5*log(2)\"\n\
+             [[regions]]\nname = \"clad\"\ndiffusivity = 1\nexact = \"-0.25*log(x^2 + y^2)\"\n{boundaries}"
+        );
+        solve(&text, MethodName::Auto).expect("it is solved").errors.expect("exact").l2
+    });
+    assert!(errors[0] < 2e-2 && (errors[0] / errors[1] - 1.0).abs() < 1e-6, "{errors:?}");
+}
+
+/// A ball of charge that samples do not add up to is not one that its spectrum says all about.
+#[test]
+fn what_samples_of_a_source_miss_is_part_of_the_estimate() {
+    let text = "title = \"Ball of charge\"\ndimension = 3\n\
+                [domain]\nfree_space = { min = [-1, -1, -1], max = [1, 1, 1] }\n\
+                [[regions]]\nname = \"space\"\ndiffusivity = 1\nsource = \"if(x^2 + y^2 + z^2 < 0.25, 1, 0)\"\n\
+                [accuracy]\ntolerance = 1e-2\n[[probes]]\nat = [0.0, 0.0, 0.0]\n";
+    let report = solve(text, MethodName::Auto).expect("it is solved");
+    let error = (report.probes[0].value.expect("inside") / 0.125 - 1.0).abs();
+    assert!(error < 1e-2, "{error:.1e}, {:?}", report.estimate);
+}

@@ -1,6 +1,6 @@
 //! A report in lines of text, as `meshless solve` prints it.
 
-use meshless::report::{Probe, Report};
+use meshless::report::{FluxReport, Probe, Report};
 
 pub(crate) fn print(report: &Report) {
     say!("{}", report.title);
@@ -10,6 +10,20 @@ pub(crate) fn print(report: &Report) {
     errors(report);
     seconds(report);
     report.probes.iter().for_each(|p| probe(p, has_u(report)));
+    report.fluxes.iter().for_each(fluxes);
+}
+
+/// What enters through the parts of the boundary, and passes interfaces.
+fn fluxes(fluxes: &FluxReport) {
+    for part in &fluxes.boundaries {
+        say!("flux        {:.6e} enters through {} (boundaries[{}])", part.flux, part.face, part.entry);
+    }
+    for seam in &fluxes.interfaces {
+        say!("flux        {:.6e} enters \"{}\" from \"{}\"", seam.flux, seam.between[0], seam.between[1]);
+    }
+    if let Some(left_over) = fluxes.left_over {
+        say!("flux        {left_over:.1e} of what enters is left over");
+    }
 }
 
 /// What was set up, and what had to be done otherwise than planned.

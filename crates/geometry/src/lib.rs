@@ -32,6 +32,7 @@ mod boundary;
 mod cells;
 mod cloud;
 mod domain;
+mod elements;
 mod error;
 mod level_set;
 mod morton;
@@ -52,6 +53,7 @@ pub use cloud::{
     Touch, around, check_size, estimate_nodes, generate, quality,
 };
 pub use domain::{Domain, FaceId};
+pub use elements::{Element, side_elements};
 pub use error::GeometryError;
 pub use level_set::{GRADIENT_STEP, LevelSet, LevelSetFn};
 pub use newton::SURFACE_TOLERANCE;

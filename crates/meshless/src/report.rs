@@ -63,6 +63,45 @@ pub struct Report {
     pub peak_memory_mb: f64,
     /// Values at the probes.
     pub probes: Vec<Probe>,
+    /// Fluxes through the parts of the boundary and the interfaces, where the scene asks for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fluxes: Option<FluxReport>,
+}
+
+/// Totals of `eta du/dn`.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct FluxReport {
+    /// Through the part of the boundary of every condition, in the order of the scene.
+    pub boundaries: Vec<BoundaryFlux>,
+    /// Through every interface of two regions.
+    pub interfaces: Vec<InterfaceFlux>,
+    /// What enters less what leaves, over half of the sum of both; only in steady scenes without sources: about the relative error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_over: Option<f64>,
+}
+
+/// What enters through a part of the boundary.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct BoundaryFlux {
+    /// The face of the condition.
+    pub face: String,
+    /// Its place in the scene, from 0.
+    pub entry: usize,
+    /// The integral of `eta du/dn`, n out of the domain.
+    pub flux: f64,
+    /// Length or area of the part; the number of points on the line.
+    pub area: f64,
+}
+
+/// What passes an interface.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct InterfaceFlux {
+    /// Names of the regions A and B, in the order of the scene.
+    pub between: Vec<String>,
+    /// The integral of `eta du/dn`, n from A to B, on the side that conducts less: what enters A.
+    pub flux: f64,
+    /// Length or area.
+    pub area: f64,
 }
 
 /// A layer, gap or inclusion that is thinner than fits want it: the solution is less accurate there.

@@ -1,11 +1,14 @@
 //! Boundary conditions of a scene, at nodes and anywhere on the boundary.
 
-use meshless_geometry::{Cloud, Domain, FaceId};
+use meshless_geometry::{BoundaryNode, Cloud, Domain, FaceId, Touch};
 use meshless_interfaces::{BoundaryData, Condition, Field};
 
 use super::fields::{field, not_finite};
 use crate::Error;
 use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
+
+/// How far from an edge between pieces of one face the condition on either is told, in spacings.
+const BESIDE: f64 = 1e-5;
 
 /// The conditions in the order of the scene: the first whose face and `where` match counts.
 pub(crate) struct Boundary<const D: usize> {
@@ -77,10 +80,9 @@ impl<const D: usize> Boundary<D> {
         let mut met = vec![false; self.entries.len()];
         let mut faces = vec![false; scene.faces().len()];
         for node in cloud.boundary() {
-            let x = &cloud.points()[node.node as usize];
             for touch in &node.touches {
                 faces[touch.face.0 as usize] = true;
-                if let Some(index) = self.entry(touch.face, x) {
+                if let Some(index) = self.entry(touch.face, &beside_edges(cloud, node, touch)) {
                     met[index] = true;
                 }
             }
@@ -102,6 +104,11 @@ impl<const D: usize> Boundary<D> {
         Err(Error::TooCoarse(Box::new(spec.place.error(message, help))))
     }
 
+    /// The entry that holds on a face at a point, and what it says there.
+    pub(crate) fn entry_at(&self, face: FaceId, x: &[f64; D]) -> Option<(usize, Condition)> {
+        self.entry(face, x).map(|index| (index, self.entries[index].kind.at(x)))
+    }
+
     /// The conditions of every boundary node, one for each of its faces, checked.
     pub(crate) fn at_nodes(&self, scene: &Scene, cloud: &Cloud<D>) -> Result<Vec<Vec<Condition>>, Error> {
         let mut all = Vec::with_capacity(cloud.boundary().len());
@@ -109,9 +116,10 @@ impl<const D: usize> Boundary<D> {
             let x = &cloud.points()[node.node as usize];
             let mut conditions = Vec::with_capacity(node.touches.len());
             for touch in &node.touches {
-                self.check_places(scene, touch.face, x)?;
+                let place = &beside_edges(cloud, node, touch);
+                self.check_places(scene, touch.face, place)?;
                 let index = self
-                    .entry(touch.face, x)
+                    .entry(touch.face, place)
                     .ok_or_else(|| missing_condition(scene, cloud, node.node as usize, x))?;
                 let condition = self.entries[index].kind.at(x);
                 check(scene, &scene.boundaries[index], &condition, x)?;
@@ -121,6 +129,21 @@ impl<const D: usize> Boundary<D> {
         }
         Ok(all)
     }
+}
+
+/// Where a node is, as its place on one of several pieces of the same face is told: a little away from the edge between them. A
+/// `where` that holds on the one piece alone then says nothing of the others.
+fn beside_edges<const D: usize>(cloud: &Cloud<D>, node: &BoundaryNode<D>, touch: &Touch<D>) -> [f64; D] {
+    let i = node.node as usize;
+    let mut x = cloud.points()[i];
+    let others = node.touches.iter().filter(|other| other.face == touch.face && other.normal != touch.normal);
+    for other in others {
+        let along: f64 = (0..D).map(|k| other.normal[k] * touch.normal[k]).sum();
+        for (k, x) in x.iter_mut().enumerate() {
+            *x -= BESIDE * cloud.spacing()[i] * (other.normal[k] - along * touch.normal[k]);
+        }
+    }
+    x
 }
 
 impl<const D: usize> BoundaryData<D> for Boundary<D> {

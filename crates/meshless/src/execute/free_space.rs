@@ -31,6 +31,8 @@ struct Source<const D: usize> {
     values: Vec<f64>,
     /// Components of the vorticity, if there is one.
     vorticity: Vec<Vec<f64>>,
+    /// What another mesh of the same spacing says otherwise of the whole: what samples miss of a source that is not smooth.
+    missed: f64,
     /// Particles that a part of it was deposited from.
     carried: Option<Carried<D>>,
 }
@@ -162,6 +164,7 @@ fn source<const D: usize>(scene: &Scene, params: FreeSpaceParams) -> Result<(Sou
         let source = sample(scene, times, params.transforms)?;
         let spectrum = spectrum(&source, params.transforms)?;
         let chosen = choose(&spectrum, params)?;
+        let chosen = Chosen { error: chosen.error.max(source.missed), ..chosen };
         let Some(tolerance) = params.tolerance.filter(|t| chosen.error > *t) else {
             return Ok((source, chosen));
         };
@@ -191,6 +194,7 @@ fn sample<const D: usize>(scene: &Scene, times: usize, transforms: Transforms) -
     let regions = build::regions::<D>(scene)?;
     let labels: Vec<u16> = points.iter().map(|p| regions.label(p, 0.0)).collect();
     let mut values = build::nodal_source(scene, &build::materials(scene), &points, &labels)?;
+    let missed = missed(scene, &points, &values)?;
     let spec = scene.free_space.as_ref().and_then(|s| s.particles.as_ref());
     let carried = spec.map(Carried::from_file).transpose()?;
     if let Some(carried) = &carried {
@@ -202,7 +206,32 @@ fn sample<const D: usize>(scene: &Scene, times: usize, transforms: Transforms) -
     let vorticity = (0..transforms.vorticity)
         .map(|component| build::nodal_vorticity(scene, component, &points, &labels))
         .collect::<Result<_, _>>()?;
-    Ok(Source { mesh, points, labels, values, vorticity, carried })
+    Ok(Source { mesh, points, labels, values, vorticity, missed, carried })
+}
+
+/// Half of the difference of the totals of the source on this mesh and on one between its points, or of its moments, over that of its
+/// size: a spectrum of samples knows nothing of what lies between them, such as where exactly a ball of charge ends.
+fn missed<const D: usize>(scene: &Scene, points: &[[f64; D]], values: &[f64]) -> Result<f64, Error> {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return Ok(0.0) };
+    let regions = build::regions::<D>(scene)?;
+    let half: [f64; D] = std::array::from_fn(|k| {
+        let coordinate = points.iter().map(|p| p[k]).find(|x| (x - first[k]).abs() > 0.0);
+        coordinate.map_or(0.0, |next| 0.5 * (next - first[k]).abs())
+    });
+    let between: Vec<[f64; D]> = points.iter().map(|p| std::array::from_fn(|k| p[k] + half[k])).collect();
+    let labels: Vec<u16> = between.iter().map(|p| regions.label(p, 0.0)).collect();
+    let others = build::nodal_source(scene, &build::materials(scene), &between, &labels)?;
+    let size: f64 = values.iter().map(|v| v.abs()).sum();
+    if size == 0.0 {
+        return Ok(0.0);
+    }
+    let total = |values: &[f64]| values.iter().sum::<f64>();
+    let moment = |points: &[[f64; D]], values: &[f64], k: usize| {
+        let (middle, reach) = (0.5 * (first[k] + last[k]), 0.5 * (last[k] - first[k]));
+        points.iter().zip(values).map(|(p, v)| v * (p[k] - middle) / reach).sum::<f64>()
+    };
+    let moments = (0..D).map(|k| (moment(points, values, k) - moment(&between, &others, k)).abs());
+    Ok(0.5 * moments.fold((total(values) - total(&others)).abs(), f64::max) / size)
 }
 
 /// What the scene asks for, and of the rest the best.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use meshless_interfaces::{Sample, Sampler};
+use meshless_interfaces::Sample;
 
-use super::Solved;
 use super::discrete::Exact;
+use super::{Solved, fluxes};
 use crate::Error;
 use crate::norms::ErrorNorms;
 use crate::plan::Plan;
@@ -80,14 +80,7 @@ pub(super) fn probes<const D: usize>(
     }
     let problem = solved.discrete.problem();
     let places: Vec<[f64; D]> = scene.probes.iter().map(|probe| std::array::from_fn(|k| probe[k])).collect();
-    let values = match plan.method.params.build().samples(&problem, &solved.system, &places)? {
-        Some(samples) => samples,
-        None => {
-            let sampler = Sampler::new(&problem, &solved.system.u)?;
-            let mut scratch = sampler.scratch();
-            places.iter().map(|at| sampler.at(at, &mut scratch)).collect()
-        }
-    };
+    let values = fluxes::samples(plan, solved, &places)?;
     let tolerance = 1e-9 * problem.domain.bounds().diameter();
     let value = |(at, sample): (&[f64; D], Option<Sample<D>>)| {
         let inside = problem.domain.contains(at, tolerance);

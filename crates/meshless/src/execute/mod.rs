@@ -3,6 +3,7 @@
 mod contacts;
 mod discrete;
 mod estimate;
+mod fluxes;
 mod free_space;
 mod linear;
 mod measure;
@@ -19,6 +20,7 @@ use meshless_interfaces::{
     Discretization, MethodError, RowKind, SystemParams, SystemSolution, diagnose_nodes, solve, thin_layers,
 };
 
+use crate::build::Boundary;
 use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::{Estimate, Report, Seconds};
 use crate::scene::Scene;
@@ -221,6 +223,7 @@ fn execute_in<const D: usize>(
         .runs(Stage::Diagnosis)
         .then(|| diagnose_nodes(&problem, &solved.discretization, plan.method.params.order()));
     let probes = measure::probes(scene, plan, &solved)?;
+    let fluxes = plan.runs(Stage::Fluxes).then(|| fluxes::fluxes(scene, plan, &solved)).transpose()?;
     seconds.post = post.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
     let before = Instant::now();
@@ -240,7 +243,7 @@ fn execute_in<const D: usize>(
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    let report = Report { fallback, thin_layer, contacts, ..report };
+    let report = Report { fallback, thin_layer, contacts, fluxes, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames, particles: None })
 }

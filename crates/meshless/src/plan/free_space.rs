@@ -18,6 +18,14 @@ pub(super) fn plan(scene: &Scene, survey: Survey) -> Result<Plan, Error> {
         let message = format!("the method \"{}\" is for bounded domains", scene.method.name.as_str());
         return Err(scene.domain.place.error(message, "the method in free space is \"free-space\"").into());
     }
+    if scene.output.fluxes {
+        let message = "free space has no boundaries and no interfaces that a flux could go through";
+        return Err(scene
+            .domain
+            .place
+            .error(message, "remove `output.fluxes`, or give a bounded domain")
+            .into());
+    }
     let points: f64 = crate::build::mesh_cells(scene)?.iter().map(|&n| n as f64).product();
     if points > MAX_NODES as f64 {
         let message = format!("the spacing gives {points:.2e} points, and at most {MAX_NODES} are allowed");

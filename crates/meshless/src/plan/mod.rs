@@ -101,6 +101,8 @@ pub enum Stage {
     Errors,
     /// Values at the probes.
     Probes,
+    /// Fluxes through boundaries and interfaces.
+    Fluxes,
     /// Solve on a coarser cloud to estimate the error.
     Estimate,
     /// Condition, residual and signs of every node's stencil and row.
@@ -123,6 +125,7 @@ impl Stage {
             Self::Gradient
                 | Self::Errors
                 | Self::Probes
+                | Self::Fluxes
                 | Self::Estimate
                 | Self::Diagnosis
                 | Self::Vtu
@@ -152,6 +155,12 @@ impl Plan {
         let predicted = predict::predict(scene, &survey, &method)?;
         let solver = choose::solver(scene, &survey, method.name, predicted.unknowns);
         let (stages, skipped) = choose::stages(scene, &survey, &method);
+        if scene.output.fluxes && !stages.contains(&Stage::Fluxes) {
+            let message =
+                format!("`output.fluxes`: \"{}\" has no gradients up to interfaces", method.name.as_str());
+            let help = "take the method \"sharp\", which has, or remove the key";
+            return Err(scene.domain.place.error(message, help).into());
+        }
         Ok(Self {
             dimension: scene.dimension,
             effects: survey.effects,

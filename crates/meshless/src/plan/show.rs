@@ -30,6 +30,7 @@ impl Stage {
             Self::Gradient => "gradient",
             Self::Errors => "errors",
             Self::Probes => "probes",
+            Self::Fluxes => "fluxes",
             Self::Estimate => "error estimate",
             Self::Diagnosis => "stencil diagnosis",
             Self::Refinement => "refinement",

@@ -83,7 +83,7 @@ fn probes(root: &Table<'_>) -> Result<Vec<Vec<f64>>, SceneError> {
 
 fn output(root: &Table<'_>) -> Result<OutputSpec, SceneError> {
     let Some(value) = root.get("output") else { return Ok(OutputSpec::default()) };
-    let table = value.subtable(&["vtu", "plot", "csv"])?;
+    let table = value.subtable(&["vtu", "plot", "csv", "fluxes"])?;
     let flag = |key: &str| table.get(key).map_or(Ok(false), |value| value.boolean());
-    Ok(OutputSpec { vtu: flag("vtu")?, plot: flag("plot")?, csv: flag("csv")? })
+    Ok(OutputSpec { vtu: flag("vtu")?, plot: flag("plot")?, csv: flag("csv")?, fluxes: flag("fluxes")? })
 }

@@ -357,4 +357,6 @@ pub struct OutputSpec {
     pub plot: bool,
     /// The fields as comma-separated numbers.
     pub csv: bool,
+    /// Fluxes through boundaries and interfaces, in the report.
+    pub fluxes: bool,
 }
