@@ -89,6 +89,16 @@ pub enum FreeSpaceError {
         /// The error that is expected of the best kernel.
         error: f64,
     },
+    /// A source that does not end within its box.
+    #[error(
+        "at the edge of its box the source is {edge:e} of its largest value, above the tolerance {tolerance:e}; enlarge the box"
+    )]
+    Edge {
+        /// Largest magnitude at the edge over that of all.
+        edge: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
     /// Patches that would have to be finer than allowed.
     #[error(
         "after {levels} levels of patches the estimated error is {error:e} of the largest value, above the tolerance {tolerance:e}; allow more \

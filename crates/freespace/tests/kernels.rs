@@ -194,3 +194,15 @@ fn slopes_are_derivatives() {
     both::<2>();
     both::<3>();
 }
+
+#[test]
+fn what_is_no_distance_has_no_value() {
+    for order in [2, 10] {
+        assert!(Gaussian::<1>::new(order, 1.0).expect("an order").value(f64::NAN).is_nan());
+        assert!(Gaussian::<2>::new(order, 1.0).expect("an order").value(f64::NAN).is_nan());
+        assert!(Gaussian::<3>::new(order, 1.0).expect("an order").value(f64::NAN).is_nan());
+    }
+    assert!(Spectral::<2>::new(1.0).expect("a radius").value(f64::NAN).is_nan());
+    assert!(Spectral::<3>::new(1.0).expect("a radius").value(f64::NAN).is_nan());
+    assert!(Truncated::<2>::new(1.0).expect("a radius").transform(f64::NAN).is_nan());
+}

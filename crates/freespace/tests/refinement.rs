@@ -277,6 +277,39 @@ fn trees_that_cannot_be_are_refused() {
     assert!(matches!(said, Err(FreeSpaceError::Levels { levels: 1, .. })), "{said:?}");
     let nothing = suggest_tree(&base, |_| 0.0, TreeParams::default());
     assert_eq!(nothing, Ok(Vec::new()));
+    let said = suggest_tree(&base, |p| three_charges([p[0] - 0.7, p[1]]), TreeParams::default());
+    assert!(matches!(said, Err(FreeSpaceError::Edge { edge, .. }) if edge > 1e-3), "{said:?}");
+}
+
+/// Bad input is an error that says which, never a panic and never a loop.
+#[test]
+fn trees_of_bad_input_are_refused() {
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [64; 2], Centring::Cell).expect("a mesh");
+    let wide = |p: [f64; 2]| (-(p[0] * p[0] + p[1] * p[1]) / 0.02).exp();
+    let good = TreeParams { tolerance: 1e-5, ..TreeParams::default() };
+    let refined = suggest_tree(&base, wide, good).expect("a tree");
+    assert!(!refined.is_empty());
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let said = suggest_tree(&base, wide, TreeParams { tolerance, ..good });
+        assert!(matches!(said, Err(FreeSpaceError::Invalid { .. })), "{tolerance}: {said:?}");
+    }
+    for ratio in [0, 1] {
+        let said = suggest_tree(&base, wide, TreeParams { ratio, ..good });
+        assert!(matches!(said, Err(FreeSpaceError::Invalid { .. })), "{ratio}: {said:?}");
+    }
+    assert!(suggest_tree(&base, wide, TreeParams { ratio: usize::MAX, ..good }).is_err());
+    let none = suggest_tree(&base, wide, TreeParams { levels: 0, ..good });
+    assert!(matches!(none, Err(FreeSpaceError::Levels { levels: 0, .. })), "{none:?}");
+    for smoothing in [0.0, f64::NAN, f64::INFINITY] {
+        let refine = RefineParams { smoothing: Some(smoothing), ..good.refine };
+        assert!(suggest_tree(&base, wide, TreeParams { refine, ..good }).is_err(), "{smoothing}");
+    }
+    let refine = RefineParams { order: 5, ..good.refine };
+    let said = suggest_tree(&base, wide, TreeParams { refine, ..good });
+    assert_eq!(said, Err(FreeSpaceError::Order { order: 5 }));
+    let holed = |p: [f64; 2]| if p[0].abs() < 0.02 { f64::NAN } else { wide(p) };
+    let said = suggest_tree(&base, holed, good);
+    assert!(matches!(said, Err(FreeSpaceError::NotFinite { .. })), "{said:?}");
 }
 
 proptest! {

@@ -16,6 +16,7 @@ mod reals;
 mod stage;
 
 pub(crate) use ends::{FromColumns, ToColumns};
+pub(crate) use even::{Even, even_cost};
 pub(crate) use factors::{Accumulate, Factor, Move, Turn, Weigh};
 pub(crate) use lanes::{MOST, Vectors};
 pub(crate) use lines::{Lines, Machine};

@@ -43,8 +43,7 @@ pub enum Kernel {
     /// The limit of infinite order: wave numbers up to pi over the largest spacing, no others.
     Spectral,
     /// The singular kernel, cut off beyond the diagonal of the box, in Fourier space (Vico, Greengard and Ferrando
-    /// 2016): exact for sources that the mesh resolves, with cells of any aspect ratio. The set-up needs up to
-    /// `((1 + sqrt 3)/2)^3 = 2.5` times the memory of the others for a cube.
+    /// 2016): exact for sources that the mesh resolves, with cells of any aspect ratio.
     Truncated,
 }
 

@@ -166,7 +166,7 @@ mod tests {
 
     use super::{Pieces, Smooth};
     use crate::error::FreeSpaceError;
-    use crate::kernel::{BandPass, Radial, Spectral, Truncated};
+    use crate::kernel::{BandPass, Radial, Spectral};
 
     /// A function of the distance.
     struct Function<F>(F);
@@ -211,10 +211,6 @@ mod tests {
             let error = difference(&deep, deep.smooth(), 18.0, 0.1 * deep.value(0.0));
             assert!(error < 1e-14, "order {order}: {error:e}");
         }
-        let truncated = Truncated::<2>::new(1.4)?;
-        let transform = Function(|k: f64| truncated.transform(k));
-        let error = difference(&transform, truncated.smooth(), 3000.0, 0.05);
-        assert!(error < 1e-14, "{error:e}");
         Ok(())
     }
 

@@ -32,6 +32,11 @@ impl Screened {
         Self { open, radius, kappa, bessel }
     }
 
+    /// What of an unscreened kernel is left out of [`Self::transform`], a constant wherever it is not cut off.
+    pub(crate) fn rim(open: usize, radius: f64) -> Result<f64, FreeSpaceError> {
+        if open == 2 { Truncated::<2>::new(radius).map(|t| t.rim()) } else { Ok(0.0) }
+    }
+
     /// Value at the wave number `k` of the open directions.
     pub(crate) fn transform(&self, k: f64) -> Result<f64, FreeSpaceError> {
         let (l, kappa) = (self.radius, self.kappa);
@@ -41,7 +46,7 @@ impl Screened {
         if kappa == 0.0 {
             return match self.open {
                 1 => Truncated::<1>::new(l).map(|t| t.transform(k)),
-                2 => Truncated::<2>::new(l).map(|t| t.transform(k)),
+                2 => Truncated::<2>::new(l).map(|t| t.transform_above_rim(k)),
                 _ => Truncated::<3>::new(l).map(|t| t.transform(k)),
             };
         }

@@ -2,9 +2,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::Smooth;
 use crate::error::FreeSpaceError;
-use crate::special::one_minus_j0;
+use crate::special::{one_minus_j0, one_minus_j0_ratios};
 
 /// The Fourier transform of the singular Green's function times the indicator of the ball of radius L (Vico, Greengard and
 /// Ferrando 2016). Where no two points are farther apart than L, it acts as the Green's function itself; being smooth
@@ -45,10 +44,30 @@ impl<const D: usize> Truncated<D> {
         }
     }
 
-    /// It oscillates with the radius; in three dimensions it is a sine, which polynomials are no faster than.
-    pub(crate) fn smooth(&self) -> Option<Smooth> {
-        let error = 1e-16 * self.radius * self.radius;
-        (D == 2).then_some(Smooth { width: 1.5 * PI / self.radius, error })
+    /// The singular Green's function in the plane where it is cut off, elsewhere nothing. Without it the rest begins there with zero, and
+    /// its transform is only J0 and falls faster.
+    pub(crate) fn rim(&self) -> f64 {
+        if D == 2 { -self.radius.ln() / (2.0 * PI) } else { 0.0 }
+    }
+
+    /// The transform of the singular Green's function less [`Self::rim`], times the indicator of the ball.
+    pub(crate) fn transform_above_rim(&self, k: f64) -> f64 {
+        if D != 2 {
+            return self.transform(k);
+        }
+        let x = self.radius * k;
+        let ratio = if x < 1e-10 { 0.25 } else { one_minus_j0(x) / (x * x) };
+        self.radius * self.radius * ratio
+    }
+
+    /// The same for squares of wave numbers in units of `unit` squared, in place.
+    pub(crate) fn transforms_above_rim(&self, unit: f64, squares: &mut [f64]) {
+        if D != 2 {
+            return squares.iter_mut().for_each(|s| *s = self.transform(unit * s.sqrt()));
+        }
+        let (scale, square) = (self.radius * unit, self.radius * self.radius);
+        one_minus_j0_ratios(scale, squares);
+        squares.iter_mut().for_each(|s| *s *= square);
     }
 
     /// Checks that the box and the radius fit into each period.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::boundary::Continuation;
 use super::real::Real;
-use crate::fft::{Lines, Machine};
+use crate::fft::{Lines, Machine, even_cost};
 
 /// Number of points, padded length and transforms of one direction.
 #[derive(Debug)]
@@ -137,22 +137,28 @@ fn waves(len: usize, spacing: f64) -> impl Iterator<Item = f64> {
 
 /// The least even number of at least `least` that has no prime factor above 5.
 pub(super) fn fast_length(least: usize) -> usize {
+    fast_lengths(least).min().unwrap_or(least)
+}
+
+/// The one whose transforms of even lines cost least, where there are as many lines as the length.
+pub(super) fn fast_even_length(least: usize) -> usize {
+    fast_lengths(least).min_by_key(|&n| n * even_cost(n)).unwrap_or(least)
+}
+
+/// Even numbers of at least `least` without prime factors above 5, for all powers of three and five the least.
+fn fast_lengths(least: usize) -> impl Iterator<Item = usize> {
     let least = least.max(2);
-    let mut best = least.next_power_of_two();
-    let mut fives = 1;
-    while fives < best {
-        let mut threes = fives;
-        while threes < best {
-            let mut all = 2 * threes;
-            while all < least {
-                all *= 2;
-            }
-            best = best.min(all);
-            threes *= 3;
-        }
-        fives *= 5;
-    }
-    best
+    let beyond = least.saturating_mul(2);
+    let powers = move |p: usize| {
+        std::iter::successors(Some(1), move |n: &usize| n.checked_mul(p)).take_while(move |n| *n < beyond)
+    };
+    let products =
+        powers(5).flat_map(move |fives| powers(3).filter_map(move |threes| fives.checked_mul(threes)));
+    products.filter_map(move |odd| {
+        let doubled =
+            std::iter::successors(odd.checked_mul(2), |n| n.checked_mul(2)).find(|n| *n >= least)?;
+        (doubled < beyond).then_some(doubled)
+    })
 }
 
 #[cfg(test)]

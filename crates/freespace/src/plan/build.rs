@@ -1,13 +1,12 @@
 //! From a mesh, a kernel and boundaries to transforms and Ĝ.
 
-use super::axis::{Axis, fast_length};
+use super::axis::{Axis, fast_even_length, fast_length};
 use super::boundary::{Boundary, Continuation};
 use super::engine::{self, Engine};
 use super::estimate::Estimate;
 use super::memory;
 use super::octant::{Mixed, Octant};
 use super::real::Real;
-use super::sample::Samples;
 use crate::error::FreeSpaceError;
 use crate::fft::Machine;
 use crate::kernel::{Gaussian, Kernel, Radial, Smooth, Spectral, Truncated, default_smoothing, passed};
@@ -72,6 +71,12 @@ impl Layout {
         std::array::from_fn(|a| self.lines[a].len)
     }
 
+    /// What Ĝ is divided by: transforms there and back multiply by their lengths, and spectra of the first direction are twice what they
+    /// should be.
+    fn all(&self) -> f64 {
+        2.0 * self.lengths().iter().map(|&n| n as f64).product::<f64>()
+    }
+
     fn half(&self) -> [usize; 3] {
         self.lengths().map(|n| n / 2 + 1)
     }
@@ -95,7 +100,7 @@ impl Layout {
     fn wide(&self, beyond: f64) -> [usize; 3] {
         std::array::from_fn(|a| match self.lines[a].open_span {
             Some(span) => {
-                fast_length(span + (beyond / self.spacing[a]).ceil() as usize).max(self.lines[a].len)
+                fast_even_length(span + (beyond / self.spacing[a]).ceil() as usize).max(self.lines[a].len)
             }
             None => self.lines[a].len,
         })
@@ -103,24 +108,21 @@ impl Layout {
 
     /// Ĝ of a kernel of the distance in open directions, which may be known to be smooth.
     pub(super) fn radial(&self, kernel: &dyn Radial, smooth: Option<Smooth>) -> Octant {
-        let samples = Samples { shape: self.half(), spacing: self.spacing };
-        Octant::of_samples(samples.of(kernel, smooth), self.half(), self.spacing)
+        Octant::of_samples(kernel, smooth, self.half(), self.spacing, self.all())
     }
 
     /// The engine with this Ĝ.
     pub(super) fn engine<T: Real>(&self, octant: Octant, estimate: Option<(usize, f64)>) -> Engine<T> {
-        // Spectra of the first direction are twice what they should be.
-        let all = 2.0 * self.lengths().iter().map(|&n| n as f64).product::<f64>();
         let axes = std::array::from_fn(|a| Axis::new(self.points[a], &self.lines[a], self.spacing[a]));
         let machine = Machine::new::<T>();
         let packs = engine::packs(&axes, machine.lanes());
         Engine {
-            kernel: octant.packed(self.half(), &packs, all),
+            kernel: octant.packed(&packs),
             axes,
             machine,
             packs,
             estimate: estimate
-                .map(|(order, sigma)| Estimate::new(order, sigma, self.lengths(), self.spacing, all)),
+                .map(|(order, sigma)| Estimate::new(order, sigma, self.lengths(), self.spacing, self.all())),
         }
     }
 
@@ -158,7 +160,11 @@ pub(super) fn planned<const D: usize, T: Real>(
     let radius = layout.diagonal() + reach;
     let in_fourier_space = !all_open || kernel == Kernel::Truncated;
     let wide = in_fourier_space.then(|| layout.wide(radius + reach));
-    memory::check::<T>(layout.points, layout.lengths(), wide, memory_mb)?;
+    // With the first direction done, and before where all of it is stored.
+    let done = wide.map(|[_, y, z]| [layout.lengths()[0], y, z]);
+    let before = wide.filter(|_| !all_open);
+    let arrays: Vec<[usize; 3]> = done.into_iter().chain(before).collect();
+    memory::check::<T>(layout.points, layout.lengths(), &arrays, memory_mb)?;
     let octant = match (wide, gaussian) {
         (Some(wide), _) if !all_open => {
             let cut = std::f64::consts::PI / coarsest(mesh);
@@ -169,7 +175,7 @@ pub(super) fn planned<const D: usize, T: Real>(
             };
             let mixed =
                 Mixed { open: layout.open(), radius, wide, half: layout.half(), spacing: layout.spacing };
-            Octant::of_mixed(&mixed, &filter)?
+            Octant::of_mixed(&mixed, &filter, layout.all())?
         }
         (Some(wide), _) => {
             let kernel = Truncated::<D>::new(radius)?;
@@ -177,7 +183,8 @@ pub(super) fn planned<const D: usize, T: Real>(
                 std::array::from_fn(|a| layout.side(slot::<D>(a))),
                 std::array::from_fn(|a| wide[slot::<D>(a)] as f64 * mesh.spacing()[a]),
             )?;
-            Octant::of_truncated(&kernel, wide.map(|n| n / 2 + 1), layout.half(), layout.spacing)
+            let wide = wide.map(|n| n / 2 + 1);
+            Octant::of_truncated(&kernel, wide, layout.half(), layout.spacing, layout.all())
         }
         (None, Some((order, sigma))) => layout.radial(&Gaussian::<D>::new(order, sigma)?, None),
         (None, None) => {

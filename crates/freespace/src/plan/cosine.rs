@@ -1,173 +1,143 @@
-//! Cosine transforms of arrays that are even in every direction.
-
-use rayon::prelude::*;
+//! Cosine transforms of lines that are even, several at once.
 
 use super::aligned::Aligned;
-use crate::fft::{FromReals, Lines, MOST, Machine, ToReals};
-
-/// Entries of a piece of a plane that one task works on.
-const PIECE: usize = 32;
+use super::columns::Half;
+use super::separable::Columns;
+use crate::fft::{Even, FromReals, MOST, Machine, ToReals};
 
 /// Transforms of one length: `X_k = x_0 + (-1)^k x_n + 2 sum x_j cos(pi j k / n)`, n + 1 numbers each (DCT-I), which is the
 /// discrete Fourier transform of the even continuation with period 2n. It is real, so that two packs of lines are the real and the
 /// imaginary parts of one.
 struct Cosine {
-    lines: Lines<f64>,
-    machine: Machine,
+    even: Even<f64>,
     half: usize,
-}
-
-struct Scratch {
-    /// The even continuation.
-    values: Aligned<f64>,
-    /// Lines before and after.
-    packs: Aligned<f64>,
-    /// A line of zeros, and lines that are not wanted.
-    missing: Vec<f64>,
 }
 
 impl Cosine {
     fn new(half: usize) -> Self {
-        Self { lines: Lines::new((2 * (half - 1)).max(1)), machine: Machine::new::<f64>(), half }
+        Self { even: Even::new((2 * (half - 1)).max(1)), half }
+    }
+}
+
+/// What is done with the lines of a direction: a transform, or a transform of which only the first numbers are wanted and the
+/// transform of these, or nothing.
+pub(super) struct Direction {
+    cosines: Vec<Cosine>,
+    machine: Machine,
+    /// Numbers before and after.
+    pub(super) from: usize,
+    pub(super) to: usize,
+    /// The places of numbers that nothing is done with.
+    places: Vec<u32>,
+}
+
+/// Two packs of lines, and room to transform them in.
+pub(super) struct Scratch {
+    pub(super) packs: Aligned<f64>,
+    values: Aligned<f64>,
+    /// Lines that there are not: a line of zeros, and lines that are not wanted.
+    zeros: Vec<f64>,
+    unwanted: Vec<f64>,
+}
+
+impl Direction {
+    /// Nothing is done with `half` numbers, or they are transformed once; or `wide` numbers are, and the first `half` of these again.
+    pub(super) fn new(wide: usize, half: usize, times: usize) -> Self {
+        let lengths: &[usize] = match times {
+            0 => &[],
+            1 => &[half],
+            _ => &[wide, half],
+        };
+        let lengths = if wide > 1 { lengths } else { &[] };
+        let cosines = lengths.iter().map(|&n| Cosine::new(n)).collect();
+        let places = (0..half as u32).collect();
+        Self { cosines, machine: Machine::new::<f64>(), from: wide, to: half, places }
     }
 
-    /// Numbers of a place of two packs.
-    fn width(&self) -> usize {
+    /// Lines that are transformed together: numbers of a place of two packs.
+    pub(super) fn width(&self) -> usize {
         2 * self.machine.lanes()
     }
 
-    fn scratch(&self) -> Scratch {
-        let period = (2 * (self.half - 1)).max(1);
+    pub(super) fn scratch(&self) -> Scratch {
+        let room = self.cosines.iter().map(|c| c.even.room()).max().unwrap_or(0);
+        let most = self.from.max(self.to);
         Scratch {
-            values: Aligned::zeros(period * self.width()),
-            packs: Aligned::zeros(self.half * self.width()),
-            missing: vec![0.0; self.half * (1 + self.machine.lanes())],
+            packs: Aligned::zeros(most * self.width()),
+            values: Aligned::zeros(room * self.width()),
+            zeros: vec![0.0; most],
+            unwanted: vec![0.0; most * self.width()],
         }
     }
 
-    /// The transform of what is in the packs, a place of all lines after the other.
-    fn transform<'s>(&'s self, scratch: &'s mut Scratch) -> impl Iterator<Item = &'s [f64]> {
-        self.lines.forward_even(&self.machine, &scratch.packs, &mut scratch.values);
-        let (values, width) = (&scratch.values[..], self.width());
-        (0..self.half).map(move |k| &values[self.lines.place_of_even(k) * width..][..width])
-    }
-
-    /// Transforms what is in the packs.
-    fn in_place(&self, scratch: &mut Scratch) {
-        let mut packs = std::mem::take(&mut scratch.packs);
-        self.lines.forward_even(&self.machine, &packs, &mut scratch.values);
+    /// Transforms the packs: for each number, those of all lines.
+    pub(super) fn run<'s>(&'s self, scratch: &'s mut Scratch) -> impl Iterator<Item = &'s [f64]> {
         let width = self.width();
-        for (k, to) in packs.chunks_exact_mut(width).enumerate() {
-            copy(&scratch.values[self.lines.place_of_even(k) * width..][..width], to);
+        let Scratch { packs, values, .. } = scratch;
+        for (index, Cosine { even, half }) in self.cosines.iter().enumerate() {
+            if index > 0 {
+                ordered(values, self.cosines[index - 1].even.places(), &mut packs[..half * width], width);
+            }
+            even.forward(&self.machine, &packs[..half * width], values);
         }
-        scratch.packs = packs;
+        let (from, places) = match self.cosines.last() {
+            Some(cosine) => (&values[..], cosine.even.places()),
+            None => (&packs[..], &self.places[..]),
+        };
+        places.iter().map(move |place| &from[*place as usize * width..][..width])
     }
 
-    /// Transforms lines that lie one behind the other.
-    fn rows(&self, lines: &mut [f64], scratch: &mut Scratch) {
-        let (half, lanes) = (self.half, self.machine.lanes());
-        for lines in lines.chunks_mut(half * self.width()) {
-            for part in 0..2 {
-                let mut these = [&scratch.missing[..half]; MOST];
-                let present = lines.chunks_exact(half).skip(part * lanes);
-                these[..lanes].iter_mut().zip(present).for_each(|(to, line)| *to = line);
-                let (lines, values) = (&these[..lanes], &mut scratch.packs[..]);
-                self.machine.run(FromReals { lines, count: half, values, first: part, stride: 2 });
-            }
-            self.in_place(scratch);
-            for part in 0..2 {
-                let mut these: [&mut [f64]; MOST] = std::array::from_fn(|_| &mut [][..]);
-                let present = lines.chunks_exact_mut(half).skip(part * lanes).take(lanes);
-                let all = present.chain(scratch.missing[half..].chunks_exact_mut(half));
-                these[..lanes].iter_mut().zip(all).for_each(|(to, line)| *to = line);
-                let (lines, values) = (&mut these[..lanes], &scratch.packs[..]);
-                self.machine.run(ToReals { lines, count: half, values, first: part, stride: 2 });
-            }
+    /// Takes columns of a symmetric array of which half is known.
+    pub(super) fn half(&self, values: &[f64], first: usize, scratch: &mut Scratch) {
+        let Scratch { packs, zeros, .. } = scratch;
+        let half = Half { values, n: self.from, machine: &self.machine, zeros };
+        half.fill(first, self.width(), &mut packs[..self.from * self.width()]);
+    }
+
+    /// Takes up to as many lines as are transformed together, the same piece of each, to the places from `at` on.
+    pub(super) fn take<'l>(&self, lines: impl Iterator<Item = &'l [f64]>, at: usize, scratch: &mut Scratch) {
+        let (lanes, mut lines) = (self.machine.lanes(), lines.peekable());
+        let count = lines.peek().map_or(0, |line| line.len());
+        for first in 0..2 {
+            let mut these = [&scratch.zeros[..count]; MOST];
+            these[..lanes].iter_mut().zip(&mut lines).for_each(|(to, line)| *to = line);
+            let (lines, values) = (&these[..lanes], &mut scratch.packs[at * 2 * lanes..]);
+            self.machine.run(FromReals { lines, count, values, first, stride: 2 });
         }
     }
 
-    /// Transforms the columns of `rows`, pieces of equal width that lie one below the other.
-    fn columns(&self, rows: &mut [&mut [f64]], scratch: &mut Scratch) {
-        let width = rows.first().map_or(0, |r| r.len());
-        for first in (0..width).step_by(self.width()) {
-            let count = self.width().min(width - first);
-            for (row, to) in rows.iter().zip(scratch.packs.chunks_exact_mut(self.width())) {
-                copy(&row[first..first + count], &mut to[..count]);
-                to[count..].fill(0.0);
-            }
-            for (row, from) in rows.iter_mut().zip(self.transform(scratch)) {
-                copy(&from[..count], &mut row[first..first + count]);
-            }
+    /// Transforms the packs and gives up to as many lines.
+    pub(super) fn give<'l>(&self, lines: impl Iterator<Item = &'l mut [f64]>, scratch: &'l mut Scratch) {
+        let (lanes, count) = (self.machine.lanes(), self.to);
+        self.run(scratch).for_each(drop);
+        let Scratch { packs, values, unwanted, .. } = scratch;
+        if let Some(cosine) = self.cosines.last() {
+            ordered(values, cosine.even.places(), packs, self.width());
+        }
+        let mut lines = lines.chain(unwanted.chunks_exact_mut(count));
+        for first in 0..2 {
+            let mut these: [&mut [f64]; MOST] = std::array::from_fn(|_| &mut [][..]);
+            these[..lanes].iter_mut().zip(&mut lines).for_each(|(to, line)| *to = line);
+            let (lines, values) = (&mut these[..lanes], &packs[..]);
+            self.machine.run(ToReals { lines, count, values, first, stride: 2 });
         }
     }
 }
 
-/// Places of two packs of four are two moves of vectors and no call.
-fn copy(from: &[f64], to: &mut [f64]) {
-    match (<&[f64; 8]>::try_from(from), <&mut [f64; 8]>::try_from(&mut *to)) {
-        (Ok(from), Ok(to)) => *to = *from,
-        _ => to.copy_from_slice(from),
+/// Numbers in the order of their places.
+fn ordered(values: &[f64], places: &[u32], packs: &mut [f64], width: usize) {
+    for (place, to) in places.iter().zip(packs.chunks_exact_mut(width)) {
+        copy(&values[*place as usize * width..][..width], to);
     }
 }
 
-/// Transforms an array of `shape`, the last direction running fastest, along the directions with `along`.
-pub(super) fn transform(values: &mut [f64], shape: [usize; 3], along: [bool; 3]) {
-    let [nx, ny, nz] = shape;
-    let cosines = shape.map(Cosine::new);
-    let along: [bool; 3] = std::array::from_fn(|a| along[a] && shape[a] > 1);
-    let together = if ny > 1 { ny * nz } else { nz * cosines[2].width() };
-    values.par_chunks_mut(together).for_each_init(
-        || (cosines[1].scratch(), cosines[2].scratch()),
-        |(for_y, for_z), plane| {
-            if along[2] {
-                cosines[2].rows(plane, for_z);
-            }
-            if along[1] {
-                let mut rows: Vec<&mut [f64]> = plane.chunks_exact_mut(nz).collect();
-                cosines[1].columns(&mut rows, for_y);
-            }
-        },
-    );
-    if !along[0] {
-        return;
-    }
-    let mut pieces: Vec<Vec<&mut [f64]>> =
-        (0..(ny * nz).div_ceil(PIECE)).map(|_| Vec::with_capacity(nx)).collect();
-    for plane in values.chunks_exact_mut(ny * nz) {
-        for (rows, piece) in pieces.iter_mut().zip(plane.chunks_mut(PIECE)) {
-            rows.push(piece);
-        }
-    }
-    pieces
-        .par_iter_mut()
-        .for_each_init(|| cosines[0].scratch(), |scratch, rows| cosines[0].columns(rows, scratch));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::transform;
-
-    #[test]
-    fn twice_is_the_period_times_the_array() {
-        let shape = [5, 4, 7];
-        let before: Vec<f64> = (0..140).map(|i| f64::from(i * i % 23) - 7.0).collect();
-        let mut values = before.clone();
-        transform(&mut values, shape, [true; 3]);
-        transform(&mut values, shape, [true; 3]);
-        let period = 8.0 * 6.0 * 12.0;
-        assert!(values.iter().zip(&before).all(|(v, b)| (v / period - b).abs() < 1e-12));
-    }
-
-    #[test]
-    fn a_line_is_a_sum_of_cosines() {
-        let line = [3.0, -1.0, 2.0, 5.0];
-        let mut values = line;
-        transform(&mut values, [1, 1, 4], [true; 3]);
-        for (k, value) in values.iter().enumerate() {
-            let cosine = |j: usize| (std::f64::consts::PI * (j * k) as f64 / 3.0).cos();
-            let sum =
-                line[0] * cosine(0) + line[3] * cosine(3) + 2.0 * (line[1] * cosine(1) + line[2] * cosine(2));
-            assert!((value - sum).abs() < 1e-13);
-        }
+/// Places of one or two packs of four are one or two moves of vectors and no call.
+pub(super) fn copy(from: &[f64], to: &mut [f64]) {
+    if let (Ok(from), Ok(to)) = (<&[f64; 8]>::try_from(from), <&mut [f64; 8]>::try_from(&mut *to)) {
+        *to = *from;
+    } else if let (Ok(from), Ok(to)) = (<&[f64; 4]>::try_from(from), <&mut [f64; 4]>::try_from(&mut *to)) {
+        *to = *from;
+    } else {
+        to.copy_from_slice(from);
     }
 }

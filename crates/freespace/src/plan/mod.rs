@@ -5,6 +5,7 @@ mod axis;
 mod bare;
 mod boundary;
 mod build;
+mod columns;
 mod cosine;
 mod engine;
 mod estimate;
@@ -16,6 +17,7 @@ mod packs;
 mod real;
 mod recipe;
 mod sample;
+mod separable;
 mod tile;
 
 use crate::error::FreeSpaceError;
@@ -126,7 +128,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
     pub fn with_radial(mesh: &Mesh<D>, kernel: &dyn Radial) -> Result<Self, FreeSpaceError> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let layout = Layout::with_boundaries(mesh, [Boundary::OPEN; D])?;
-        memory::check::<T>(layout.points, layout.lengths(), None, None)?;
+        memory::check::<T>(layout.points, layout.lengths(), &[], None)?;
         Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel, None), None), closed: None })
     }
 
@@ -147,7 +149,7 @@ impl<const D: usize, T: Real> Plan<D, T> {
         smooth: Option<Smooth>,
     ) -> Result<Self, FreeSpaceError> {
         let layout = Layout::compact(mesh);
-        memory::check::<T>(layout.points, layout.lengths(), None, None)?;
+        memory::check::<T>(layout.points, layout.lengths(), &[], None)?;
         Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel, smooth), None), closed: None })
     }
 

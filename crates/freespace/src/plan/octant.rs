@@ -2,25 +2,39 @@
 
 use rayon::prelude::*;
 
-use super::cosine;
+use super::columns::Given;
+use super::cosine::Direction;
 use super::packs::Packs;
 use super::real::Real;
 use super::sample::Samples;
+use super::separable::{Separable, triangle};
 use crate::error::FreeSpaceError;
-use crate::kernel::{Radial, Screened, Truncated};
+use crate::kernel::{Radial, Screened, Smooth, Truncated};
 
-/// Values on the octant of offsets `0..shape` in each direction, the last one running fastest.
+/// Ĝ on the octant of wave numbers `0..half` in each direction, the last one running fastest.
 pub(super) struct Octant {
     values: Vec<f64>,
-    /// What they are to be multiplied by.
-    scale: f64,
+    half: [usize; 3],
+    /// Whether directions may be exchanged, so that there are lines only for `x <= y`.
+    symmetric: bool,
+    /// Lines whose numbers lie together; one where there is a second direction.
+    together: usize,
 }
 
 impl Octant {
-    /// The transform of a kernel from its samples at the offsets of the mesh, times the volume of a cell.
-    pub(super) fn of_samples(mut values: Vec<f64>, half: [usize; 3], spacing: [f64; 3]) -> Self {
-        cosine::transform(&mut values, half, [true; 3]);
-        Self { values, scale: spacing.iter().product() }
+    /// The transform of a kernel from its samples at the offsets of the mesh, times the volume of a cell, over `all`.
+    pub(super) fn of_samples(
+        kernel: &dyn Radial,
+        smooth: Option<Smooth>,
+        half: [usize; 3],
+        spacing: [f64; 3],
+        all: f64,
+    ) -> Self {
+        let samples = Samples { shape: half, spacing };
+        let symmetric = samples.is_symmetric();
+        let scale = spacing.iter().product::<f64>() / all;
+        let done = Separable::new(half.map(|n| Direction::new(n, n, 1)), symmetric, scale);
+        Self { values: samples.of(kernel, smooth, &done), half, symmetric, together: done.together() }
     }
 
     /// The same of a truncated kernel: sampled in Fourier space with the periods `2 (wide - 1)`, in which it is the
@@ -30,16 +44,33 @@ impl Octant {
         wide: [usize; 3],
         half: [usize; 3],
         spacing: [f64; 3],
+        all: f64,
     ) -> Self {
-        let period = wide.map(|w| (2 * (w - 1)).max(1));
-        let unit: [f64; 3] = std::array::from_fn(|a| std::f64::consts::TAU / (period[a] as f64 * spacing[a]));
-        let mut values = Samples { shape: wide, spacing: unit }.of(&Transformed(kernel), kernel.smooth());
-        cosine::transform(&mut values, wide, [true; 3]);
-        let all: f64 = period.iter().map(|&p| p as f64).product();
-        let mut cropped = crop(&values, wide, half);
-        drop(values);
-        cosine::transform(&mut cropped, half, [true; 3]);
-        Self { values: cropped, scale: 1.0 / all }
+        let points = |half: [usize; 3]| half.map(|n| (2 * (n - 1)).max(1) as f64);
+        let (period, padded) = (points(wide), points(half));
+        let volume: f64 = padded.iter().zip(spacing).map(|(n, h)| n * h).product();
+        let unit: [f64; 3] = std::array::from_fn(|a| std::f64::consts::TAU / (period[a] * spacing[a]));
+        let samples = Samples { shape: wide, spacing: unit };
+        let symmetric = samples.is_symmetric() && half[0] == half[1] && half[1] == half[2];
+        let directions = std::array::from_fn(|a| Direction::new(wide[a], half[a], 2));
+        let done = Separable::new(directions, symmetric, 1.0 / (period.iter().product::<f64>() * all));
+        let mut values = samples.of(&Transformed(kernel), None, &done);
+        // What is left of the kernel is a constant at all offsets.
+        values[0] += kernel.rim() * volume / all;
+        Self { values, half, symmetric, together: done.together() }
+    }
+
+    /// The line of two indices.
+    fn line(&self, i: usize, j: usize) -> impl Iterator<Item = f64> {
+        let (length, together) = (self.half[2], self.together);
+        let start = i / together * together * length + i % together;
+        let start = if together > 1 { start } else { self.place(i, j) * length };
+        self.values[start..].iter().step_by(together).take(length).copied()
+    }
+
+    /// Where the line of two indices is, if the numbers of lines do not lie together.
+    fn place(&self, i: usize, j: usize) -> usize {
+        if self.symmetric { triangle(i.min(j), i.max(j), self.half[0]) } else { i * self.half[1] + j }
     }
 }
 
@@ -48,18 +79,23 @@ struct Transformed<'a, const D: usize>(&'a Truncated<D>);
 
 impl<const D: usize> Radial for Transformed<'_, D> {
     fn value(&self, k: f64) -> f64 {
-        self.0.transform(k)
+        self.0.transform_above_rim(k)
+    }
+
+    fn values(&self, unit: f64, squares: &mut [f64]) {
+        self.0.transforms_above_rim(unit, squares);
     }
 }
 
 impl Octant {
-    /// Divided by `all`, in the order that columns are multiplied in: for each wave number of the first direction (none where there is
+    /// In the order that columns are multiplied in: for each wave number of the first direction (none where there is
     /// no second one), block of packs and wave number of the third, one number for each lane.
-    pub(super) fn packed<T: Real>(mut self, half: [usize; 3], packs: &Packs, all: f64) -> Vec<T> {
-        let (lanes, flat, scale) = (packs.lanes(), half[1] == 1, self.scale / all);
-        if flat && lanes == 4 {
+    pub(super) fn packed<T: Real>(mut self, packs: &Packs) -> Vec<T> {
+        let (half, lanes) = (self.half, packs.lanes());
+        let flat = half[1] == 1;
+        if flat && lanes == self.together {
             match T::same(self.values) {
-                Ok(values) => return interleaved(values, half[2], T::rounded(scale)),
+                Ok(values) => return values,
                 Err(values) => self.values = values,
             }
         }
@@ -69,42 +105,22 @@ impl Octant {
         let mut kernel = vec![T::zero(); planes * of.len() * size];
         kernel.par_chunks_exact_mut(size).enumerate().for_each(|(block, kernel)| {
             let (plane, columns) = (block / of.len(), &of[block % of.len()]);
-            let line = |k: usize| &self.values[(plane * half[1] + k) * half[2]..][..half[2]];
-            if let [Some(a), Some(b), Some(c), Some(d)] = columns[..] {
-                let lines = line(a).iter().zip(line(b)).zip(line(c)).zip(line(d));
+            if let ([Some(a), Some(b), Some(c), Some(d)], false) = (&columns[..], flat) {
+                let line = |k: &usize| self.values[self.place(plane, *k) * half[2]..][..half[2]].iter();
+                let lines = line(a).zip(line(b)).zip(line(c)).zip(line(d));
                 for (to, (((a, b), c), d)) in kernel.as_chunks_mut::<4>().0.iter_mut().zip(lines) {
-                    *to = [a * scale, b * scale, c * scale, d * scale].map(T::rounded);
+                    *to = [*a, *b, *c, *d].map(T::rounded);
                 }
                 return;
             }
             for (lane, column) in columns.iter().enumerate() {
-                let to = kernel.iter_mut().skip(lane).step_by(lanes);
-                let line = column.map_or(&[][..], line);
-                to.zip(line).for_each(|(to, g)| *to = T::rounded(g * scale));
+                let Some(k) = *column else { continue };
+                let line = if flat { self.line(k, 0) } else { self.line(plane, k) };
+                kernel.iter_mut().skip(lane).step_by(lanes).zip(line).for_each(|(to, g)| *to = T::rounded(g));
             }
         });
         kernel
     }
-}
-
-/// Lines of `width` numbers, the numbers of four together, in the same memory; lines that there are not are zero.
-fn interleaved<T: Real>(mut lines: Vec<T>, width: usize, scale: T) -> Vec<T> {
-    let size = 4 * width;
-    lines.resize(lines.len().next_multiple_of(size), T::zero());
-    lines.par_chunks_exact_mut(size).for_each_init(
-        || vec![T::zero(); size],
-        |scratch, block| {
-            scratch.copy_from_slice(block);
-            let (a, rest) = scratch.split_at(width);
-            let (b, rest) = rest.split_at(width);
-            let (c, d) = rest.split_at(width);
-            let lines = a.iter().zip(b).zip(c).zip(d);
-            for (to, (((a, b), c), d)) in block.as_chunks_mut::<4>().0.iter_mut().zip(lines) {
-                *to = [*a * scale, *b * scale, *c * scale, *d * scale];
-            }
-        },
-    );
-    lines
 }
 
 /// A problem of which some directions are periods.
@@ -126,6 +142,7 @@ impl Octant {
     pub(super) fn of_mixed(
         mixed: &Mixed,
         filter: &(dyn Fn(f64) -> f64 + Sync),
+        all: f64,
     ) -> Result<Self, FreeSpaceError> {
         let Mixed { open, radius, wide, half, spacing } = *mixed;
         let shape = wide.map(|n| n / 2 + 1);
@@ -152,26 +169,14 @@ impl Octant {
             }
             Ok(())
         })?;
-        if count == 0 {
-            return Ok(Self { values, scale: 1.0 });
-        }
-        cosine::transform(&mut values, shape, open);
-        let mut cropped = crop(&values, shape, half);
-        drop(values);
-        cosine::transform(&mut cropped, half, open);
-        let all: f64 = (0..3).filter(|a| open[*a]).map(|a| wide[a] as f64).product();
-        Ok(Self { values: cropped, scale: 1.0 / all })
+        let periods: f64 = (0..3).filter(|a| open[*a]).map(|a| wide[a] as f64).product();
+        let directions =
+            std::array::from_fn(|a| Direction::new(shape[a], half[a], if open[a] { 2 } else { 0 }));
+        let done = Separable::new(directions, false, 1.0 / (periods * all));
+        let mut values = done.of(&Given { values: &values, across: shape[1] * shape[2] });
+        let volume: f64 =
+            (0..3).filter(|a| open[*a]).map(|a| spacing[a] * (2 * (half[a] - 1)) as f64).product();
+        values[0] += Screened::rim(count, radius)? * volume / all;
+        Ok(Self { values, half, symmetric: false, together: done.together() })
     }
-}
-
-/// The corner of an array.
-fn crop(values: &[f64], wide: [usize; 3], half: [usize; 3]) -> Vec<f64> {
-    let mut out = Vec::with_capacity(half.iter().product());
-    for i in 0..half[0] {
-        for j in 0..half[1] {
-            let start = (i * wide[1] + j) * wide[2];
-            out.extend_from_slice(&values[start..start + half[2]]);
-        }
-    }
-    out
 }

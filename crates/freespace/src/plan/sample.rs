@@ -1,11 +1,11 @@
-//! Values of a kernel at all offsets of a mesh.
+//! Values of a kernel at all offsets of a mesh, transformed.
 
 use rayon::prelude::*;
 
+use super::columns::{Evaluated, Half, Known};
+use super::separable::{Separable, triangle};
+use crate::fft::Machine;
 use crate::kernel::{Pieces, Radial, Smooth};
-
-/// Rows that are worked on together.
-const ROWS: usize = 32;
 
 /// The offsets `0..shape` of each direction, the last one running fastest.
 #[derive(Clone, Copy)]
@@ -15,14 +15,34 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Values of a kernel, by polynomials where that takes less time.
-    pub(super) fn of(self, kernel: &dyn Radial, smooth: Option<Smooth>) -> Vec<f64> {
+    /// Values of a kernel, by polynomials where that takes less time, and what is done with them.
+    pub(super) fn of(self, kernel: &dyn Radial, smooth: Option<Smooth>, done: &Separable) -> Vec<f64> {
         let pieces =
             smooth.and_then(|smooth| Pieces::new(kernel, smooth, self.farthest(), self.evaluations()));
-        match &pieces {
-            Some(pieces) => self.values(pieces),
-            None => self.values(kernel),
+        let kernel: &dyn Radial = pieces.as_ref().map_or(kernel, |pieces| pieces);
+        if let Some(spacing) = self.repeats() {
+            let (table, across) = (self.table(kernel, spacing), self.across());
+            return done.of(&Known { table: &table, across: &across });
         }
+        if self.is_square() {
+            let (values, n, machine) = (self.half(kernel), self.shape[2], Machine::new::<f64>());
+            return done.of(&Half { values: &values, n, machine: &machine, zeros: &vec![0.0; n] });
+        }
+        let (unit, [along, y, z]) = self.squares_along();
+        let across: Vec<f64> = y.iter().flat_map(|y| z.iter().map(move |z| y + z)).collect();
+        done.of(&Evaluated { kernel, unit, along: &along, across: &across })
+    }
+
+    /// Whether all three directions are the same.
+    pub(super) fn is_symmetric(self) -> bool {
+        let [x, y, z] = self.shape;
+        x == y && y == z && self.repeats().is_some()
+    }
+
+    /// Squares of the distances of columns from the first direction in units of the spacing, of a symmetric array those with `y <= z`.
+    fn across(self) -> Vec<usize> {
+        let first = |y: usize| if self.is_symmetric() { y } else { 0 };
+        (0..self.shape[1]).flat_map(|y| (first(y)..self.shape[2]).map(move |z| y * y + z * z)).collect()
     }
 
     /// The largest distance.
@@ -71,84 +91,51 @@ impl Samples {
         self.shape.iter().map(|&n| (n - 1) * (n - 1)).sum()
     }
 
-    fn values(self, kernel: &(impl Radial + ?Sized)) -> Vec<f64> {
-        match self.repeats() {
-            Some(spacing) => self.cubes(kernel, spacing),
-            None => self.rows(kernel),
-        }
-    }
-
-    /// Row by row; of squares half.
-    fn rows(self, kernel: &(impl Radial + ?Sized)) -> Vec<f64> {
-        let (shape, square) = (self.shape, self.is_square());
-        // Where cells are cubes, squares of distances in their units are whole numbers.
+    /// A length and the squares of the offsets of each direction in units of its square: where cells are cubes, whole numbers.
+    fn squares_along(self) -> (f64, [Vec<f64>; 3]) {
         let unit = self.used().fold(0.0, |unit: f64, a| unit.max(self.spacing[a]));
         let unit = if unit > 0.0 { unit } else { 1.0 };
-        let squares: [Vec<f64>; 3] = std::array::from_fn(|a| {
+        let along = |a: usize| {
             let ratio = self.spacing[a] / unit;
-            (0..shape[a]).map(|i| (i as f64 * ratio).powi(2)).collect()
-        });
-        // With room for lines that make the last four complete.
-        let count: usize = shape.iter().product();
-        let mut values = vec![0.0; count + 3 * shape[2]];
-        values.truncate(count);
-        values.par_chunks_mut(shape[2]).enumerate().for_each(|(line, out)| {
-            let (i, j) = (line / shape[1], line % shape[1]);
-            let (here, skip) = (squares[0][i] + squares[1][j], if square { i } else { 0 });
-            let own = &mut out[skip..];
-            own.iter_mut().zip(&squares[2][skip..]).for_each(|(value, z)| *value = here + z);
-            kernel.values(unit, own);
-        });
-        if square {
-            mirror(&mut values, shape[2]);
+            (0..self.shape[a]).map(|i| (i as f64 * ratio).powi(2)).collect()
+        };
+        (unit, std::array::from_fn(along))
+    }
+
+    /// Half of a square, row by row.
+    fn half(self, kernel: &dyn Radial) -> Vec<f64> {
+        let n = self.shape[2];
+        let (unit, [x, _, z]) = self.squares_along();
+        let mut values = vec![0.0; triangle(n, n, n)];
+        let (mut rows, mut rest) = (Vec::with_capacity(n), &mut values[..]);
+        for i in 0..n {
+            let (row, others) = std::mem::take(&mut rest).split_at_mut(n - i);
+            rows.push(row);
+            rest = others;
         }
+        rows.into_par_iter().enumerate().for_each(|(i, row)| {
+            row.iter_mut().zip(&z[i..]).for_each(|(value, z)| *value = x[i] + z);
+            kernel.values(unit, row);
+        });
         values
     }
 
-    /// Distances between the points of cubes are `h sqrt(i)`; each is evaluated once.
-    fn cubes(self, kernel: &(impl Radial + ?Sized), spacing: f64) -> Vec<f64> {
-        let shape = self.shape;
-        let first = |j: usize| if shape[1] == shape[2] { j } else { 0 };
+    /// Values by the square of the distance in units of the spacing, of those that there are.
+    fn table(self, kernel: &dyn Radial, spacing: f64) -> Vec<f64> {
         let mut occurs = vec![false; self.squares() + 1];
-        for i in 0..shape[0] {
-            for j in 0..shape[1] {
-                let here = i * i + j * j;
-                (first(j)..shape[2]).for_each(|k| occurs[here + k * k] = true);
-            }
-        }
-        let table: Vec<f64> = occurs
-            .par_iter()
-            .enumerate()
-            .with_min_len(256)
-            .map(|(square, &used)| if used { kernel.value(spacing * (square as f64).sqrt()) } else { 0.0 })
-            .collect();
-        let mut values = vec![0.0; shape.iter().product()];
-        values.par_chunks_mut(shape[2]).enumerate().for_each(|(line, out)| {
-            let (i, j) = (line / shape[1], line % shape[1]);
-            out.iter_mut().enumerate().for_each(|(k, value)| *value = table[i * i + j * j + k * k]);
-        });
-        values
-    }
-}
-
-/// What is below the diagonal of a square, from what is above it.
-fn mirror(values: &mut [f64], n: usize) {
-    for start in (0..n).step_by(ROWS) {
-        let count = ROWS.min(n - start);
-        let (above, rows) = values.split_at_mut(start * n);
-        for (k, from) in above.chunks_exact(n).enumerate() {
-            let from = &from[start..start + count];
-            from.iter().zip(rows.chunks_exact_mut(n)).for_each(|(value, row)| row[k] = *value);
-        }
-        for i in 0..count {
-            (0..i).for_each(|k| rows[i * n + start + k] = rows[k * n + start + i]);
-        }
+        let across = self.across();
+        (0..self.shape[0]).for_each(|i| across.iter().for_each(|here| occurs[i * i + here] = true));
+        let of = |(square, &used): (usize, &bool)| {
+            if used { kernel.value(spacing * (square as f64).sqrt()) } else { 0.0 }
+        };
+        occurs.par_iter().enumerate().with_min_len(256).map(of).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Samples;
+    use super::super::cosine::Direction;
+    use super::{Samples, Separable};
     use crate::error::FreeSpaceError;
     use crate::kernel::{Gaussian, Radial, Spectral};
 
@@ -181,9 +168,12 @@ mod tests {
                 (&deep, deep_smooth, 0.0),
             ];
             for (kernel, smooth, least) in kernels {
-                let samples = Samples { shape, spacing }.of(kernel, smooth);
-                for (index, value) in samples.iter().enumerate() {
-                    let i = [index / shape[2] / shape[1], index / shape[2] % shape[1], index % shape[2]];
+                let samples = Samples { shape, spacing };
+                let symmetric = samples.is_symmetric();
+                let nothing = Separable::new(shape.map(|n| Direction::new(n, n, 0)), symmetric, 1.0);
+                let values = samples.of(kernel, smooth, &nothing);
+                // Lines that make the last ones complete are none of the array.
+                for (i, value) in nothing.indices().zip(values).filter(|(i, _)| i[0] < shape[0]) {
                     let r = (0..3).fold(0.0_f64, |r, a| r.hypot(i[a] as f64 * spacing[a]));
                     let error = (value - kernel.value(r)).abs();
                     assert!(

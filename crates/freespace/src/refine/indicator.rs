@@ -42,7 +42,7 @@ fn patches<const D: usize>(
     // Each patch samples a band as well, in units of its own cells.
     let kernel = BandPass::<D>::new(params.order, params.smoothing.unwrap_or(SMOOTHING), ratio as f64)?;
     let band = 2.0 * (kernel.reach(params.tolerance) + TAPER as f64);
-    let cost = |cells: [usize; D]| cells.iter().map(|n| (n * ratio) as f64 + band).product();
+    let cost = |cells: [usize; D]| cells.iter().map(|&n| n as f64 * ratio as f64 + band).product();
     let above = error.iter().enumerate().filter(|(_, e)| e.abs() > limit);
     let blocks = Blocks::new(mesh.cells(), above.map(|(point, _)| mesh.indices(point)));
     let boxes = blocks.covers(&cost).into_iter();
@@ -91,8 +91,8 @@ const LEAST_RATIO: f64 = 1.1;
 /// patches add what a mesh smooths, not what it samples wrongly.
 ///
 /// # Errors
-/// [`FreeSpaceError::Tolerance`] where the base mesh does not resolve the source, [`FreeSpaceError::Levels`] where more levels would be needed,
-/// and the errors of kernels and plans.
+/// [`FreeSpaceError::Edge`] where more of the source than the tolerance is left at the edge of the base mesh, [`FreeSpaceError::Tolerance`] where
+/// the mesh does not resolve it, [`FreeSpaceError::Levels`] where more levels would be needed, a ratio below 2, and the errors of kernels and plans.
 pub fn suggest_tree<const D: usize>(
     base: &Mesh<D>,
     source: impl Fn([f64; D]) -> f64,
@@ -105,7 +105,15 @@ pub fn suggest_tree<const D: usize>(
     } else {
         vec![Output::Potential { source: 0 }]
     };
+    if ratio < 2 {
+        let value = ratio as f64;
+        return Err(FreeSpaceError::Invalid { what: "ratio of spacings", value, expected: "at least 2" });
+    }
     let values = base.sample(&source);
+    let edge = base.edge_ratio(&values);
+    if edge > tolerance {
+        return Err(FreeSpaceError::Edge { edge, tolerance });
+    }
     let unresolved = Spectrum::new(base, &values)?.error(Kernel::Spectral);
     if unresolved > tolerance {
         return Err(FreeSpaceError::Tolerance { tolerance, error: unresolved });

@@ -30,7 +30,7 @@ fn series(x: f64, weight: impl Fn(f64) -> f64) -> f64 {
         let sign = if k % 2.0 == 1.0 { 1.0 } else { -1.0 };
         let term = sign * power * weight(k);
         sum += term;
-        if term.abs() <= f64::EPSILON / 8.0 * sum.abs() {
+        if term.abs() <= f64::EPSILON / 8.0 * sum.abs() || sum.is_nan() {
             return sum;
         }
     }

@@ -18,7 +18,8 @@ pub(crate) fn ein(x: f64) -> f64 {
         harmonic += 1.0 / n;
         let term = power * harmonic;
         sum += term;
-        if term <= f64::EPSILON / 8.0 * sum {
+        // Of no number there is no sum.
+        if term <= f64::EPSILON / 8.0 * sum || sum.is_nan() {
             return (-x).exp() * sum;
         }
     }
@@ -46,7 +47,7 @@ pub(crate) fn e1(x: f64) -> f64 {
         c = b + a / c;
         let factor = c * d;
         h *= factor;
-        if (factor - 1.0).abs() <= f64::EPSILON {
+        if (factor - 1.0).abs() <= f64::EPSILON || h.is_nan() {
             return h * (-x).exp();
         }
     }

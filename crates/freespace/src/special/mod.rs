@@ -3,12 +3,14 @@
 mod bessel;
 mod exponential;
 mod logarithm;
+mod oscillating;
 mod sine;
 
 pub(crate) use bessel::one_minus_j0;
 pub(crate) use bessel::one_minus_j0_integral;
 pub(crate) use exponential::{e1, ein};
 pub(crate) use logarithm::logarithms;
+pub(crate) use oscillating::one_minus_j0_ratios;
 pub(crate) use sine::sine_integral;
 
 /// Euler's constant.
