@@ -66,15 +66,18 @@ fn every_method_of_a_bounded_domain_steps_through_time() {
     }
 }
 
-/// Orders by theory, over three clouds a spacing. Immersed interfaces: ghosts and operators of second order. The other two
+/// Orders by theory, over three clouds a spacing. Immersed interfaces: ghosts and operators of second order. The others
 /// are of first order: particle differences take the second derivative across an interface, which jumps in time, to be continuous, and
 /// surface reaction smears the kink over a width; both leave errors of their rows that do not fall with the spacing, in a
 /// layer as thick as it.
 #[test]
 fn the_order_at_a_contact_is_that_of_theory() {
-    for (name, order) in
-        [("immersed-interface", 2.0), ("particle-difference", 1.0), ("surface-reaction", 1.0)]
-    {
+    for (name, order) in [
+        ("immersed-interface", 2.0),
+        ("particle-difference", 1.0),
+        ("particle-difference-extended", 1.0),
+        ("surface-reaction", 1.0),
+    ] {
         let method = MethodName::parse(name).expect("a method");
         let clouds = |h: f64| {
             let seeded = |seed| composite(2, h, 10.0, 1e-4).replace("seed = 1", &format!("seed = {seed}"));
@@ -103,14 +106,14 @@ fn two_materials_in_contact() {
     }
 }
 
-/// All that step: with the jumps of the slope as unknowns modes grow that should decay, which is refused.
-const EVERY_METHOD: [MethodName; 8] = [
+const EVERY_METHOD: [MethodName; 9] = [
     MethodName::GfdmClassical,
     MethodName::GfdmConservative,
     MethodName::GfdmHybrid,
     MethodName::GfdmPositive,
     MethodName::ImmersedInterface,
     MethodName::ParticleDifference,
+    MethodName::ParticleDifferenceExtended,
     MethodName::Sharp,
     MethodName::SurfaceReaction,
 ];
@@ -138,6 +141,7 @@ fn data_that_change_are_exact_for_every_method() {
         (ImmersedInterface, jumps(1.0)),
         // The second derivative across the interface is taken to be continuous in time.
         (ParticleDifference, jumps(0.0)),
+        (ParticleDifferenceExtended, jumps(0.0)),
         (Sharp, jumps(1.0)),
         // A kink by a source alone is exact, one by diffusivities is smeared; u does not jump.
         (SurfaceReaction, Growing { second: Some(1.0), jump: 0.0, square: 0.0 }),

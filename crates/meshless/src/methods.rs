@@ -55,7 +55,7 @@ pub const METHODS: &[MethodInfo] = &[
         order: "1-2 / 2",
         dimensions: "1, 2, 3",
         limits: "the jump of the slope is an unknown at points of the interfaces: the former particle difference method, \
-                 to be compared with; steady, no slits",
+                 to be compared with; no slits",
     },
     MethodInfo {
         name: "immersed-interface",

@@ -33,6 +33,7 @@ pub(super) struct ConstrainedScratch<'a, const D: usize> {
     coefficients: Vec<f64>,
     slopes: Slopes<D>,
     frame: Frame<D>,
+    origin: [f64; D],
     radius: f64,
 }
 
@@ -69,6 +70,7 @@ impl<'a, const D: usize> ConstrainedFit<'a, D> {
             coefficients: Vec::with_capacity(most),
             slopes: Slopes::default(),
             frame: Frame::new(&std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 })),
+            origin: [0.0; D],
             radius: 1.0,
         }
     }
@@ -93,7 +95,7 @@ impl<'a, const D: usize> ConstrainedFit<'a, D> {
         let x = &points[i];
         let axis = std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 });
         let (origin, frame) = scratch.sides.frame().unwrap_or((*x, Frame::new(&axis)));
-        scratch.frame = frame;
+        (scratch.origin, scratch.frame) = (origin, frame);
         scratch.offsets.clear();
         scratch.weights.clear();
         let radii = self.problem.supports.radius;
@@ -204,12 +206,35 @@ impl<'a, const D: usize> ConstrainedFit<'a, D> {
         scratch: &mut ConstrainedScratch<'a, D>,
         out: &mut Vec<f64>,
     ) -> Result<(), StencilError> {
+        let (turned, at) = (turned(functional, &scratch.frame), scratch.offsets[0]);
+        self.coefficients_at(&turned, &at, scratch, out)
+    }
+
+    /// The same for the derivative of this side's polynomial along a vector, at a point.
+    pub(super) fn slope_at(
+        &self,
+        point: &[f64; D],
+        along: &[f64; D],
+        scratch: &mut ConstrainedScratch<'a, D>,
+        out: &mut Vec<f64>,
+    ) -> Result<(), StencilError> {
+        let (origin, frame) = (scratch.origin, scratch.frame);
+        let at = frame.turn(&std::array::from_fn(|k| point[k] - origin[k]));
+        self.coefficients_at(&Functional::Directional(frame.turn(along)), &at, scratch, out)
+    }
+
+    /// The same in the coordinates of the frame.
+    fn coefficients_at(
+        &self,
+        functional: &Functional<D>,
+        at: &[f64; D],
+        scratch: &mut ConstrainedScratch<'a, D>,
+        out: &mut Vec<f64>,
+    ) -> Result<(), StencilError> {
         let count = scratch.offsets.len();
         scratch.moments.clear();
         scratch.moments.resize(self.fit.monomials().count(), 0.0);
-        let turned = turned(functional, &scratch.frame);
-        let at = scratch.offsets[0];
-        self.fit.moments_at(&turned, &at, scratch.radius, &mut scratch.moments)?;
+        self.fit.moments_at(functional, at, scratch.radius, &mut scratch.moments)?;
         scratch.moments.iter_mut().zip(&scratch.slopes.scales).for_each(|(m, s)| *m *= s);
         scratch.coefficients.resize(count, 0.0);
         self.fit.coefficients_for(&scratch.moments, &mut scratch.fit, &mut scratch.coefficients)?;

@@ -32,7 +32,8 @@ pub struct ParticleDifferenceParams {
     pub visibility: bool,
     /// Fits near the tips of slits have the singular functions there, as far as the slits ask for it.
     pub enrichment: bool,
-    /// In time: where the own value of a row has the wrong sign, or hardly any weight, all neighbours count alike.
+    /// In time: where the own value of a row has the wrong sign, or hardly any weight, all neighbours count alike; and jumps that are
+    /// unknowns follow from fits for both sides.
     pub decaying: bool,
 }
 

@@ -54,7 +54,7 @@ impl Stencil {
 }
 
 /// The own entry of a row over the absolute ones of the others; 1 where none of these has the wrong sign.
-fn own_share(coefficients: &[f64]) -> f64 {
+pub(super) fn own_share(coefficients: &[f64]) -> f64 {
     coefficients.iter().sum::<f64>() / coefficients.iter().map(|c| c.abs()).sum::<f64>()
 }
 
@@ -64,7 +64,7 @@ const MOST_INEXACT: f64 = 1e-10;
 
 /// Share of the absolute entries of the others that the own one of a row has at least where u changes with time. In a row of the
 /// wrong sign the node grows by itself.
-const LEAST_OWN: f64 = 0.2;
+pub(super) const LEAST_OWN: f64 = 0.2;
 
 /// Makes stencils: plain ones where the support does not touch an interface, constrained ones where it does.
 pub(super) struct StencilMaker<'a, const D: usize> {

@@ -21,7 +21,7 @@ impl Mass {
         rows.iter().enumerate().filter(|(_, algebraic)| **algebraic).map(|(i, _)| i)
     }
 
-    /// Values that fulfil the algebraic rows, and are those of `u` at all other nodes.
+    /// Values that fulfil the algebraic rows and those of further unknowns, and are those of `u` at all other nodes.
     ///
     /// # Errors
     /// Those of the solver.
@@ -32,7 +32,7 @@ impl Mass {
         u: &[f64],
         solver: &SolverParams,
     ) -> Result<Vec<f64>, MethodError> {
-        let Self::Rows(mass) = self else { return Ok(u.to_vec()) };
+        let Self::Rows(mass) = self else { return further_unknowns(problem, discretization, u, solver) };
         if self.algebraic().next().is_none() {
             return Ok(u.to_vec());
         }
@@ -133,4 +133,30 @@ impl MassRows {
         };
         SplitRows { columns: (0..own.len()).map(column).collect(), ..constants.clone() }
     }
+}
+
+/// What the values of the nodes make of the further unknowns that rows have.
+fn further_unknowns<const D: usize>(
+    problem: &Problem<'_, D>,
+    discretization: &Discretization,
+    u: &[f64],
+    solver: &SolverParams,
+) -> Result<Vec<f64>, MethodError> {
+    let Discretization { rows, kinds, .. } = discretization;
+    let nodes = kinds.len();
+    if rows.n() == nodes {
+        return Ok(u.to_vec());
+    }
+    let matrix = DifferenceMatrix::from_rows(rows.n(), |i, out| {
+        if i < nodes {
+            return out.add_to_row_sum(1.0);
+        }
+        let (columns, values) = rows.row(i);
+        columns.iter().zip(values).for_each(|(&j, a)| out.push(j as usize, *a));
+        out.add_to_row_sum(rows.row_sum(i));
+    })?;
+    let given: Vec<f64> = u[..nodes].iter().chain(&discretization.rhs[nodes..]).copied().collect();
+    let known: Vec<bool> = (0..rows.n()).map(|i| i < nodes).collect();
+    let params = SystemParams { solver: *solver, split_floating: false };
+    Ok(PreparedSystem::new(problem, &matrix, &known, &params)?.solve(&given)?.0)
 }

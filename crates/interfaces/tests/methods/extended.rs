@@ -7,7 +7,7 @@ use meshless_interfaces::{Condition, Field, InterfaceJump, Method, solve};
 use crate::support::{Setup, dot, max_difference, unit};
 
 /// Two linear functions that meet at a plane, with a jump of the value and of the flux.
-fn kinked<const D: usize>(eta: [f64; 2], wedge: Wedge, seed: u64) -> [f64; 2] {
+fn kinked<const D: usize>(eta: [f64; 2], wedge: Wedge, decaying: bool, seed: u64) -> [f64; 2] {
     let mut normal: [f64; D] = std::array::from_fn(|k| 1.0 - 0.4 * k as f64);
     let length = dot(&normal, &normal).sqrt();
     normal = normal.map(|n| n / length);
@@ -24,7 +24,7 @@ fn kinked<const D: usize>(eta: [f64; 2], wedge: Wedge, seed: u64) -> [f64; 2] {
         .conditions(move |_, x| Condition::Dirichlet(u(x)));
     let (value, flux) = (Some(Field::Constant(value)), Some(Field::Constant(flux)));
     setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux, prescribed: None }];
-    let params = ParticleDifferenceParams { wedge, ..ParticleDifferenceParams::default() };
+    let params = ParticleDifferenceParams { wedge, decaying, ..ParticleDifferenceParams::default() };
     let (method, problem) = (ParticleDifferenceExtended { params }, setup.problem());
     let rows = method.discretize(&problem).unwrap();
     let found = solve(&problem, &rows, &Default::default()).unwrap();
@@ -39,10 +39,14 @@ fn kinked<const D: usize>(eta: [f64; 2], wedge: Wedge, seed: u64) -> [f64; 2] {
 fn kinks_are_found() {
     for eta in [[1.0, 1.0], [1.0, 30.0], [20.0, 1.0]] {
         for wedge in [Wedge::Plane, Wedge::Varying] {
-            for found in [kinked::<1>(eta, wedge, 1), kinked::<2>(eta, wedge, 2), kinked::<3>(eta, wedge, 3)]
-            {
+            for decaying in [false, true] {
+                let found = [
+                    kinked::<1>(eta, wedge, decaying, 1),
+                    kinked::<2>(eta, wedge, decaying, 2),
+                    kinked::<3>(eta, wedge, decaying, 3),
+                ];
                 // Rounding times the condition of the system.
-                assert!(found.iter().all(|&d| d < 1e-9), "{eta:?}, {wedge:?}: {found:?}");
+                assert!(found.as_flattened().iter().all(|&d| d < 1e-9), "{eta:?}, {wedge:?}: {found:?}");
             }
         }
     }

@@ -1,7 +1,9 @@
 //! Whether `M du/dt + A u = 0` lets anything grow, by implicit steps of all sizes.
 
 use meshless_geometry::{Layout, Shape};
-use meshless_interfaces::particle_difference::{ParticleDifference, ParticleDifferenceParams, Wedge};
+use meshless_interfaces::particle_difference::{
+    ParticleDifference, ParticleDifferenceExtended, ParticleDifferenceParams, Wedge,
+};
 use meshless_interfaces::{Condition, Discretization, Mass, Method, PreparedSystem, RowKind, SystemParams};
 
 use crate::support::{Setup, unit};
@@ -89,6 +91,33 @@ fn nothing_grows_by_particle_differences() {
                 let growth = largest_growth(&setup, &rows, 0.09, contrast);
                 if growth > 1.5 {
                     found.push(format!("{contrast:e}, {layout:?}, seed {seed}: {growth}"));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+/// With the jumps of the slope as unknowns, too, also where few nodes lie beyond a disc.
+#[test]
+fn nothing_grows_with_jumps_as_unknowns() {
+    let shapes = [Shape::half_space([0.4, 0.5], [1.0, 0.0]).unwrap(), Shape::ball([0.5, 0.5], 0.25).unwrap()];
+    let params = ParticleDifferenceParams {
+        wedge: Wedge::Plane,
+        decaying: true,
+        ..ParticleDifferenceParams::default()
+    };
+    let mut found = Vec::new();
+    for contrast in [1e-6, 1e-2, 0.1, 10.0, 100.0, 1e6] {
+        for (layout, seeds) in [(Layout::Grid, 1..=1), (Layout::Irregular, 1..=3), (Layout::Scattered, 1..=3)]
+        {
+            for (shape, seed) in shapes.iter().flat_map(|shape| seeds.clone().map(move |seed| (shape, seed)))
+            {
+                let setup = contact::<2>(shape.clone(), layout, 0.09, seed, contrast);
+                let rows = ParticleDifferenceExtended { params }.discretize(&setup.problem()).unwrap();
+                let growth = largest_growth(&setup, &rows, 0.09, contrast);
+                if growth > 1.5 {
+                    found.push(format!("{contrast:e}, {layout:?}, {shape:?}, seed {seed}: {growth}"));
                 }
             }
         }

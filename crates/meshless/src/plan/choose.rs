@@ -51,14 +51,6 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
         let message = "u can be prescribed on an interface in steady scenes without slits only";
         return Err(interface.place.error(message, "prescribe jumps instead").into());
     }
-    if let (MethodName::ParticleDifferenceExtended, Some(time)) = (named, &scene.time) {
-        let message = "the method \"particle-difference-extended\" solves steady scenes only: in time modes of its jumps grow, \
-                       whatever the steps";
-        return Err(time
-            .place
-            .error(message, "use \"particle-difference\", which eliminates them at every node")
-            .into());
-    }
     if scene.is_labelled() && scene.method.options.interfaces == Some(InterfacesName::Shapes) {
         let message = "the regions have no shapes: points from a file tell where they are";
         return Err(scene.points.place.error(message, "remove `method.interfaces`").into());

@@ -3,9 +3,10 @@
 //! Y.-C. Yoon and J.-H. Song (2021), the last lines of section 3.5, and their earlier papers [6, 8] there. Beyond an
 //! interface `u = q + a + d J`, with the jump J of the slope at the foot interpolated between unknowns at points of the
 //! interface; for each of them there is one more equation, that the flux jumps by g, or that u has a prescribed value on the
-//! interface, which J then follows from (section 3.5). It is here to be compared with
+//! interface, which J then follows from (section 3.5). In time that equation is another one, see `joint`. It is here to be compared with
 //! [`ParticleDifference`](super::ParticleDifference), which eliminates J where it arises.
 
+mod joint;
 mod points;
 mod rows;
 
@@ -38,18 +39,18 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
         let maker = RowMaker::new(problem, &feet, &points, self.params);
         let known = problem.dirichlet();
         let nodes = known.len();
+        let of_points = parallel::try_map_with(
+            points.list.len(),
+            || maker.scratch(),
+            |scratch, k| maker.point(k, scratch),
+        )?;
         let of_nodes = parallel::try_map_with(
             nodes,
             || maker.scratch(),
             |scratch, i| match known[i] {
                 Some(value) => Ok(ExtendedRow { row_sum: 1.0, rhs: value, ..ExtendedRow::default() }),
-                None => maker.node(i, scratch),
+                None => maker.node(i, &of_points, scratch),
             },
-        )?;
-        let of_points = parallel::try_map_with(
-            points.list.len(),
-            || maker.scratch(),
-            |scratch, k| maker.point(k, scratch),
         )?;
         let stencil_seconds = start.elapsed().as_secs_f64();
         let constrained = |i: usize| !of_nodes[i].jumps.is_empty();

@@ -1,11 +1,15 @@
 //! Rows over nodes and jumps.
 
-use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit, StencilError};
+use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit, StencilError, Weight};
 
+use super::joint::JointFit;
 use super::points::{InterfacePoints, separation};
+use crate::gfdm::add_correction;
 use crate::local::enlarged_support;
 use crate::particle_difference::feet::{Feet, Foot, may_jump};
+use crate::particle_difference::fit::ConstrainedScratch;
 use crate::particle_difference::leg::GRADIENT_STEP;
+use crate::particle_difference::rows::{LEAST_OWN, own_share};
 use crate::particle_difference::{ParticleDifferenceParams, Wedge};
 use crate::{MethodError, Problem};
 
@@ -20,6 +24,23 @@ pub(super) struct ExtendedRow {
     pub(super) enlarged: bool,
 }
 
+impl ExtendedRow {
+    /// The own entry of node i over the absolute ones of the others, once the jumps are eliminated by their equations, which have no
+    /// others in them.
+    fn own_share(&self, i: usize, of_points: &[ExtendedRow]) -> f64 {
+        let mut entries = self.nodes.clone();
+        for &(k, c) in &self.jumps {
+            let point = &of_points[k as usize];
+            let own: f64 = point.jumps.iter().map(|jump| jump.1).sum();
+            entries.extend(point.nodes.iter().map(|&(j, of_node)| (j, -c * of_node / own)));
+        }
+        merge(&mut entries);
+        // Rows are minus the operator.
+        let others: Vec<f64> = entries.iter().filter(|e| e.0 as usize != i).map(|e| -e.1).collect();
+        own_share(&others)
+    }
+}
+
 /// Makes the rows.
 pub(super) struct RowMaker<'a, const D: usize> {
     problem: &'a Problem<'a, D>,
@@ -27,10 +48,13 @@ pub(super) struct RowMaker<'a, const D: usize> {
     points: &'a InterfacePoints<D>,
     params: ParticleDifferenceParams,
     fit: LocalFit<D>,
+    /// Where u changes with time.
+    joint: Option<JointFit<'a, D>>,
 }
 
 /// Memory of one thread.
-pub(super) struct Scratch<const D: usize> {
+pub(super) struct Scratch<'a, const D: usize> {
+    joint: Option<ConstrainedScratch<'a, D>>,
     fit: FitScratch<D>,
     nodes: Vec<u32>,
     offsets: Vec<[f64; D]>,
@@ -38,12 +62,16 @@ pub(super) struct Scratch<const D: usize> {
     coefficients: Vec<f64>,
 }
 
-/// Whence a fit is made: a point, its region, and an interface that it sees.
+/// Whence a fit is made: a point, its region, the interfaces that it sees, and how it weighs.
+#[derive(Clone, Copy)]
 struct Centre<'f, const D: usize> {
     at: [f64; D],
     region: u16,
     node: usize,
     feet: &'f [Foot<D>],
+    weight: Weight,
+    /// Whether the node is favoured by what the fit leaves free, as in rows of boundary nodes.
+    corrected: bool,
 }
 
 impl<'a, const D: usize> RowMaker<'a, D> {
@@ -54,12 +82,14 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         params: ParticleDifferenceParams,
     ) -> Self {
         let fit = LocalFit::new(FitParams { degree: params.degree, ..FitParams::default() });
-        Self { problem, feet, points, params, fit }
+        let joint = params.decaying.then(|| JointFit::new(problem, feet, params));
+        Self { problem, feet, points, params, fit, joint }
     }
 
-    pub(super) fn scratch(&self) -> Scratch<D> {
+    pub(super) fn scratch(&self) -> Scratch<'a, D> {
         let most = self.problem.supports.lists.max_count() + 1;
         Scratch {
+            joint: self.joint.as_ref().map(JointFit::scratch),
             fit: self.fit.scratch(most),
             nodes: Vec::new(),
             offsets: Vec::new(),
@@ -69,7 +99,12 @@ impl<'a, const D: usize> RowMaker<'a, D> {
     }
 
     /// The row of a node where u is not prescribed.
-    pub(super) fn node(&self, i: usize, scratch: &mut Scratch<D>) -> Result<ExtendedRow, MethodError> {
+    pub(super) fn node(
+        &self,
+        i: usize,
+        of_points: &[ExtendedRow],
+        scratch: &mut Scratch<'a, D>,
+    ) -> Result<ExtendedRow, MethodError> {
         let problem = self.problem;
         let (x, h, eta) = (problem.cloud.points()[i], problem.cloud.spacing()[i], problem.eta[i]);
         let (mut row_sum, mut rhs, functional, size) = match problem.cloud.boundary_of(i) {
@@ -84,12 +119,52 @@ impl<'a, const D: usize> RowMaker<'a, D> {
                 (a, g, Functional::Directional(direction), h.powi(D as i32 - 1))
             }
         };
-        let centre = Centre { at: x, region: problem.labels[i], node: i, feet: self.feet.of(i) };
-        let (mut row, jump) = self.fitted(&centre, &functional, -size, scratch)?;
+        let on_boundary = problem.cloud.is_boundary(i);
+        let centre = Centre { corrected: on_boundary && self.params.decaying, ..self.at_node(i) };
+        let (mut row, mut jump) = self.fitted(&centre, &functional, -size, scratch)?;
+        if self.params.decaying && !on_boundary {
+            (row, jump) = self.calmer((row, jump), &centre, (&functional, -size), of_points, scratch);
+        }
         row_sum *= size;
         rhs = size * rhs - jump;
         row.nodes.retain(|&(j, _)| j as usize != i);
         Ok(ExtendedRow { row_sum, rhs, ..row })
+    }
+
+    fn at_node(&self, i: usize) -> Centre<'a, D> {
+        let (at, region) = (self.problem.cloud.points()[i], self.problem.labels[i]);
+        Centre { at, region, node: i, feet: self.feet.of(i), weight: self.params.weight, corrected: false }
+    }
+
+    /// In place of a row whose own value counts too little once the jumps are eliminated: all neighbours alike, then those of the
+    /// neighbours, too; what comes nearest where none does. As for [`ParticleDifference`](super::super::ParticleDifference).
+    fn calmer(
+        &self,
+        first: (ExtendedRow, f64),
+        centre: &Centre<'_, D>,
+        (functional, factor): (&Functional<D>, f64),
+        of_points: &[ExtendedRow],
+        scratch: &mut Scratch<'a, D>,
+    ) -> (ExtendedRow, f64) {
+        let (problem, i) = (self.problem, centre.node);
+        let even = Centre { weight: Weight::Uniform, ..*centre };
+        let (mut share, mut best) = (first.0.own_share(i, of_points), first);
+        for larger in [false, true] {
+            if share >= LEAST_OWN {
+                break;
+            }
+            let all = larger.then(|| enlarged_support(problem, i));
+            let neighbors = all.as_deref().unwrap_or_else(|| problem.supports.lists.of(i));
+            let mut row = ExtendedRow { enlarged: larger, ..ExtendedRow::default() };
+            let Ok(given) = self.apply(&even, neighbors, functional, factor, scratch, &mut row) else {
+                continue;
+            };
+            let found = row.own_share(i, of_points);
+            if found > share {
+                (share, best) = (found, (row, given));
+            }
+        }
+        best
     }
 
     /// The conditions of the faces of a boundary node, added: `a u + flux = g`, the flux as a derivative along a vector
@@ -117,15 +192,9 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         i: usize,
         u: &[f64],
         jumps: &[f64],
-        scratch: &mut Scratch<D>,
+        scratch: &mut Scratch<'a, D>,
     ) -> Result<[f64; D], MethodError> {
-        let problem = self.problem;
-        let centre = Centre {
-            at: problem.cloud.points()[i],
-            region: problem.labels[i],
-            node: i,
-            feet: self.feet.of(i),
-        };
+        let centre = self.at_node(i);
         let mut gradient = [0.0; D];
         for axis in 0..D {
             let functional = Functional::Directional(std::array::from_fn(|k| f64::from(u8::from(k == axis))));
@@ -142,13 +211,20 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         &self,
         k: usize,
         value: f64,
-        scratch: &mut Scratch<D>,
+        scratch: &mut Scratch<'a, D>,
     ) -> Result<ExtendedRow, MethodError> {
         let point = self.points.list[k];
         let [first, second] = point.between;
         let at = meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 };
         let feet = [Foot { beyond: second, at }];
-        let centre = Centre { at: point.at, region: first, node: point.node, feet: &feet };
+        let centre = Centre {
+            at: point.at,
+            region: first,
+            node: point.node,
+            feet: &feet,
+            weight: self.params.weight,
+            corrected: false,
+        };
         let (mut row, given) = self.fitted(&centre, &Functional::Value, 1.0, scratch)?;
         row.rhs = value - given;
         row.row_sum = row.nodes.iter().map(|(_, c)| c).sum();
@@ -157,13 +233,16 @@ impl<'a, const D: usize> RowMaker<'a, D> {
 
     /// The flux condition at a point: `kappa_B (dq/dn + J) - kappa_A dq/dn = g`, divided by both conductivities; or, where
     /// u is prescribed on the interface, that.
-    pub(super) fn point(&self, k: usize, scratch: &mut Scratch<D>) -> Result<ExtendedRow, MethodError> {
+    pub(super) fn point(&self, k: usize, scratch: &mut Scratch<'a, D>) -> Result<ExtendedRow, MethodError> {
         let (problem, point) = (self.problem, self.points.list[k]);
         let [first, second] = point.between;
         if let Some((jump, _)) = problem.jump_between(first, second)
             && let Some(u) = &jump.prescribed
         {
             return self.value_at_point(k, u.at(&point.at), scratch);
+        }
+        if let (Some(joint), Some(scratch)) = (&self.joint, &mut scratch.joint) {
+            return joint.row(k as u32, &point, scratch);
         }
         let eta = point.between.map(|l| problem.materials[l as usize].diffusivity.at(&point.at));
         let flux = problem.jump_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
@@ -177,7 +256,14 @@ impl<'a, const D: usize> RowMaker<'a, D> {
                 at: meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 },
             };
             let feet = [foot];
-            let centre = Centre { at: point.at, region: first, node: point.node, feet: &feet };
+            let centre = Centre {
+                at: point.at,
+                region: first,
+                node: point.node,
+                feet: &feet,
+                weight: self.params.weight,
+                corrected: false,
+            };
             let slope = Functional::Directional(point.normal);
             let (fitted, given) = self.fitted(&centre, &slope, factor, scratch)?;
             row = ExtendedRow { rhs: -given, ..fitted };
@@ -196,7 +282,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         centre: &Centre<'_, D>,
         functional: &Functional<D>,
         factor: f64,
-        scratch: &mut Scratch<D>,
+        scratch: &mut Scratch<'a, D>,
     ) -> Result<(ExtendedRow, f64), MethodError> {
         let (problem, node) = (self.problem, centre.node);
         let mut row = ExtendedRow::default();
@@ -217,12 +303,12 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         neighbors: &[u32],
         functional: &Functional<D>,
         factor: f64,
-        scratch: &mut Scratch<D>,
+        scratch: &mut Scratch<'a, D>,
         row: &mut ExtendedRow,
     ) -> Result<f64, MethodError> {
         let (problem, x) = (self.problem, &centre.at);
         let (points, radii, labels) = (problem.cloud.points(), problem.supports.radius, problem.labels);
-        let Scratch { fit, nodes, offsets, weights, coefficients } = scratch;
+        let Scratch { fit, nodes, offsets, weights, coefficients, .. } = scratch;
         let foot_towards = |label: u16| centre.feet.iter().find(|foot| foot.beyond == label);
         let same = |label: u16| label == centre.region || !may_jump(problem, centre.region, label);
         nodes.clear();
@@ -238,13 +324,19 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             let offset: [f64; D] = std::array::from_fn(|k| points[j as usize][k] - x[k]);
             let distance = offset.iter().map(|d| d * d).sum::<f64>().sqrt();
             offsets.push(offset);
-            weights.push(self.params.weight.value(distance, radii[centre.node], radii[j as usize]));
+            weights.push(centre.weight.value(distance, radii[centre.node], radii[j as usize]));
             radius = radius.max(distance);
         }
         let located = |source: StencilError| MethodError::stencil(centre.node, x, source);
         self.fit.factor(offsets, weights, radius, fit).map_err(located)?;
         coefficients.resize(nodes.len(), 0.0);
         self.fit.coefficients(functional, fit, coefficients).map_err(located)?;
+        if centre.corrected {
+            let own = nodes.len() - 1;
+            let mut null = vec![0.0; nodes.len()];
+            self.fit.correction(own, fit, &mut null).map_err(located)?;
+            add_correction(&mut coefficients[..own], &null[..own]);
+        }
         let mut given = 0.0;
         for (&j, &c) in nodes.iter().zip(coefficients.iter()) {
             row.nodes.push((j, factor * c));
