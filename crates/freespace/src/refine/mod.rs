@@ -76,7 +76,7 @@ impl<const D: usize> RefinedPlan<D> {
     /// Plans a base mesh with patches; parents come before their patches.
     ///
     /// # Errors
-    /// A patch outside of its parent or without room to interpolate, a ratio below 2, and the errors of kernels and plans.
+    /// A patch outside of its parent, a ratio below 2, and the errors of kernels and plans.
     pub fn new(base: &Mesh<D>, patches: &[Patch<D>], params: RefineParams) -> Result<Self, FreeSpaceError> {
         FreeSpaceError::unless_positive("tolerance of the kernels", params.tolerance)?;
         if let Superposition::Lagrange(points) = params.superposition
@@ -88,23 +88,19 @@ impl<const D: usize> RefinedPlan<D> {
                 expected: "even, from 2 to 16",
             });
         }
+        let (meshes, parents) = nested(base, patches)?;
+        let margins = margins(&meshes, &parents, params.superposition)?;
         let smoothing = params.smoothing.unwrap_or(SMOOTHING);
         let coarsest = base.spacing().into_iter().fold(0.0, f64::max);
         let kernel = Gaussian::<D>::new(params.order, smoothing * coarsest)?;
-        let plan = Plan::with_radial(base, &kernel)?;
+        let evaluated = base.grown(margins[0])?;
+        let plan = Plan::with_radial(&evaluated, &kernel)?;
         let mut levels =
-            vec![Level { plan, parent: None, mesh: *base, evaluated: *base, margin: 0, band: 0 }];
+            vec![Level { plan, parent: None, mesh: *base, evaluated, margin: margins[0], band: 0 }];
         for (index, patch) in patches.iter().enumerate() {
-            let parent = patch.parent.map_or(0, |p| p + 1);
-            if parent > index {
-                return Err(FreeSpaceError::Patch {
-                    patch: index,
-                    what: format!("its parent, patch {}, does not come before it", parent - 1),
-                });
-            }
-            let has_patches = patches.iter().any(|p| p.parent == Some(index));
-            let level = Level::of_patch(index, patch, &levels[parent], has_patches, smoothing, params)?;
-            levels.push(Level { parent: Some(parent), ..level });
+            let (mesh, margin) = (meshes[index + 1], margins[index + 1]);
+            let level = Level::of_patch(mesh, patch.ratio, margin, smoothing, params)?;
+            levels.push(Level { parent: Some(parents[index]), ..level });
         }
         Ok(Self { params, levels })
     }
@@ -124,7 +120,7 @@ impl<const D: usize> RefinedPlan<D> {
         &self.levels[index].mesh
     }
 
-    /// The mesh that the source of mesh `index` is to be sampled on, its band included.
+    /// The mesh that the source of mesh `index` is to be sampled on, with its band and what its patches are interpolated from.
     pub fn source_mesh(&self, index: usize) -> &Mesh<D> {
         self.levels[index].plan.mesh()
     }
@@ -248,19 +244,15 @@ fn placed<const D: usize>(wanted: &[Output], place: [f64; D]) -> Vec<(Output, [f
 
 impl<const D: usize> Level<D> {
     fn of_patch(
-        index: usize,
-        patch: &Patch<D>,
-        parent: &Self,
-        has_patches: bool,
+        mesh: Mesh<D>,
+        ratio: usize,
+        margin: usize,
         smoothing: f64,
         params: RefineParams,
     ) -> Result<Self, FreeSpaceError> {
-        let margin = if has_patches { params.superposition.half_width() } else { 0 };
-        let mesh = patch.mesh(index, &parent.mesh)?;
         let evaluated = mesh.grown(margin)?;
-        patch::check_room(index, &evaluated, &parent.evaluated, params.superposition)?;
         let coarsest = mesh.spacing().into_iter().fold(0.0, f64::max);
-        let kernel = BandPass::<D>::new(params.order, smoothing * coarsest, patch.ratio as f64)?;
+        let kernel = BandPass::<D>::new(params.order, smoothing * coarsest, ratio as f64)?;
         let finest = mesh.spacing().into_iter().fold(f64::INFINITY, f64::min);
         let band = (kernel.reach(params.tolerance) / finest).ceil() as usize + TAPER;
         let sampled = evaluated.grown(band)?;
@@ -278,6 +270,41 @@ impl<const D: usize> Level<D> {
         let places = self.evaluated.places_in(parent);
         interpolate(field, parent.points(), self.evaluated.points(), places, how)
     }
+}
+
+/// The base mesh and those of the patches, and for every patch the mesh that it lies in.
+fn nested<const D: usize>(
+    base: &Mesh<D>,
+    patches: &[Patch<D>],
+) -> Result<(Vec<Mesh<D>>, Vec<usize>), FreeSpaceError> {
+    let (mut meshes, mut parents) = (vec![*base], Vec::new());
+    for (index, patch) in patches.iter().enumerate() {
+        let parent = patch.parent.map_or(0, |p| p + 1);
+        if parent > index {
+            return Err(FreeSpaceError::Patch {
+                patch: index,
+                what: format!("its parent, patch {}, does not come before it", parent - 1),
+            });
+        }
+        meshes.push(patch.mesh(index, &meshes[parent])?);
+        parents.push(parent);
+    }
+    Ok((meshes, parents))
+}
+
+/// Points by which each mesh has to be grown for those of its patches to be interpolated from it: none where they keep far enough from its
+/// edge.
+fn margins<const D: usize>(
+    meshes: &[Mesh<D>],
+    parents: &[usize],
+    how: Superposition,
+) -> Result<Vec<usize>, FreeSpaceError> {
+    let mut margins = vec![0; meshes.len()];
+    for index in (1..meshes.len()).rev() {
+        let (fine, parent) = (meshes[index].grown(margins[index])?, parents[index - 1]);
+        margins[parent] = margins[parent].max(patch::shortage(&fine, &meshes[parent], how));
+    }
+    Ok(margins)
 }
 
 /// The values of `field` on `inner`, which begins `skip` points after `outer` in every direction.

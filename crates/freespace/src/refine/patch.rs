@@ -56,26 +56,12 @@ impl<const D: usize> Patch<D> {
     }
 }
 
-/// Checks that all points of `fine` can be interpolated from `coarse`.
-pub(super) fn check_room<const D: usize>(
-    index: usize,
-    fine: &Mesh<D>,
-    coarse: &Mesh<D>,
-    how: Superposition,
-) -> Result<(), FreeSpaceError> {
-    let half = how.half_width() as f64;
-    let place = fine.places_in(coarse);
-    for a in 0..D {
+/// Points that `coarse` lacks on its sides for all points of `fine` to be interpolated from it.
+pub(super) fn shortage<const D: usize>(fine: &Mesh<D>, coarse: &Mesh<D>, how: Superposition) -> usize {
+    let (half, place) = (how.half_width() as f64, fine.places_in(coarse));
+    let lacking = |a: usize| {
         let (low, high) = (place(a, 0).floor(), place(a, fine.points()[a] - 1).floor());
-        if low + 1.0 - half < 0.0 || high + half > (coarse.points()[a] - 1) as f64 {
-            return Err(FreeSpaceError::Patch {
-                patch: index,
-                what: format!(
-                    "it is too close to the edge of its parent in direction {a}: interpolation needs {half} points on \
-                     each side"
-                ),
-            });
-        }
-    }
-    Ok(())
+        (half - 1.0 - low).max(high + half - (coarse.points()[a] - 1) as f64)
+    };
+    (0..D).map(lacking).fold(0.0, f64::max) as usize
 }
