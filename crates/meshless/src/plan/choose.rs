@@ -126,24 +126,32 @@ fn outpaces_multigrid(name: MethodName, survey: &Survey) -> bool {
 const KEEP: f64 = 1.4;
 const KEEP_WITH_GHOSTS: f64 = 2.0;
 
+/// Bonds of rows with ghosts in space, some seventy, that are strong from this part of the largest on: by that of other rows half of them
+/// would be, and aggregates of 50 nodes. See `docs/multigrid.md`.
+const STRONG_WITH_GHOSTS_IN_SPACE: f64 = 0.5;
+
 /// Rows of the sharp method have large entries of either sign, and those that cross an interface are not conservative: an
 /// incomplete factorisation smooths them better, and their columns need a restriction of their own; see `docs/sharp.md`.
 /// Stencils that cross interfaces without balances have such rows there only, which coarse levels must leave as they are.
-fn multigrid(method: MethodName, survey: &Survey) -> MultigridParams {
+fn multigrid(method: MethodName, dimension: usize, survey: &Survey) -> MultigridParams {
+    let chosen = MultigridParams::default();
+    let jumps = survey.contrast > FLOATING_CONTRAST;
     match method {
-        MethodName::GfdmClassical | MethodName::GfdmPositive if survey.contrast > FLOATING_CONTRAST => {
-            MultigridParams { keep: KEEP, ..MultigridParams::default() }
+        MethodName::GfdmClassical | MethodName::GfdmPositive if jumps => {
+            MultigridParams { keep: KEEP, ..chosen }
         }
-        MethodName::ImmersedInterface if survey.contrast > FLOATING_CONTRAST => {
-            MultigridParams { keep: KEEP_WITH_GHOSTS, ..MultigridParams::default() }
-        }
+        MethodName::ImmersedInterface => MultigridParams {
+            keep: if jumps { KEEP_WITH_GHOSTS } else { chosen.keep },
+            threshold: if dimension == 3 { STRONG_WITH_GHOSTS_IN_SPACE } else { chosen.threshold },
+            ..chosen
+        },
         MethodName::Sharp => MultigridParams {
             smoother: SmootherKind::Ilu0,
             restriction: Restriction::Own,
             candidate: Candidate::Constant,
-            ..MultigridParams::default()
+            ..chosen
         },
-        _ => MultigridParams::default(),
+        _ => chosen,
     }
 }
 
@@ -162,7 +170,9 @@ pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknown
     SolverParams {
         kind,
         preconditioner: match kind {
-            SolverKind::Multigrid => PreconditionerKind::Multigrid(multigrid(method, survey)),
+            SolverKind::Multigrid => {
+                PreconditionerKind::Multigrid(multigrid(method, scene.dimension, survey))
+            }
             _ => PreconditionerKind::Ilu0,
         },
         tolerance: TOLERANCE,
