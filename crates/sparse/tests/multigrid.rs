@@ -2,44 +2,12 @@
 
 mod common;
 
-use common::{Grid, distance, grid};
+use common::{direct, disc, distance, grid, inside, iterations, multigrid, with};
 use meshless_sparse::{
     Candidate, ChainLink, Coarsening, Csr, CycleKind, DifferenceMatrix, GroupUnknowns, MultigridParams,
-    PreconditionerKind, Prepared, ProlongationKind, Restriction, SmootherKind, SolveError, SolveInfo,
-    SolverKind, SolverParams, Split, StrengthKind, solve,
+    Prepared, ProlongationKind, Restriction, SmootherKind, SolveError, SolverKind, SolverParams, Split,
+    StrengthKind, solve,
 };
-
-const RADIUS: f64 = 0.3;
-
-fn inside(x: [f64; 2]) -> bool {
-    (x[0] - 0.5).hypot(x[1] - 0.5) < RADIUS
-}
-
-/// A disc of another diffusivity in the middle of a square.
-fn disc(m: usize, contrast: f64) -> Grid {
-    grid(m, |x| if inside(x) { contrast } else { 1.0 }, 1.0, |x| x[0])
-}
-
-fn with(levels: MultigridParams) -> SolverParams {
-    SolverParams {
-        kind: SolverKind::Gmres { restart: 60 },
-        preconditioner: PreconditionerKind::Multigrid(levels),
-        tolerance: 1e-10,
-        ..SolverParams::default()
-    }
-}
-
-fn multigrid() -> SolverParams {
-    with(MultigridParams { coarsest: 40, ..MultigridParams::default() })
-}
-
-fn direct() -> SolverParams {
-    SolverParams { kind: SolverKind::Direct, ..SolverParams::default() }
-}
-
-fn iterations(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> SolveInfo {
-    solve(matrix, rhs, params).expect("converges").1
-}
 
 #[test]
 fn iterations_hardly_grow_with_nodes_or_contrast() {

@@ -2,38 +2,11 @@
 
 mod common;
 
-use common::{Grid, distance, grid};
+use common::{direct, disc, distance, iterations, multigrid, with};
 use meshless_sparse::{
-    Candidate, Csr, DifferenceMatrix, MultigridParams, PreconditionerKind, Prepared, SolveInfo, SolverKind,
+    Candidate, Csr, DifferenceMatrix, MultigridParams, PreconditionerKind, Prepared, SolverKind,
     SolverParams, solve,
 };
-
-/// A disc of another diffusivity in the middle of a square.
-fn disc(m: usize, contrast: f64) -> Grid {
-    let inside = |x: [f64; 2]| (x[0] - 0.5).hypot(x[1] - 0.5) < 0.3;
-    grid(m, |x| if inside(x) { contrast } else { 1.0 }, 1.0, |x| x[0])
-}
-
-fn with(levels: MultigridParams) -> SolverParams {
-    SolverParams {
-        kind: SolverKind::Gmres { restart: 60 },
-        preconditioner: PreconditionerKind::Multigrid(levels),
-        tolerance: 1e-10,
-        ..SolverParams::default()
-    }
-}
-
-fn multigrid() -> SolverParams {
-    with(MultigridParams { coarsest: 40, ..MultigridParams::default() })
-}
-
-fn direct() -> SolverParams {
-    SolverParams { kind: SolverKind::Direct, ..SolverParams::default() }
-}
-
-fn iterations(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> SolveInfo {
-    solve(matrix, rhs, params).expect("converges").1
-}
 
 #[test]
 fn refreshed_levels_serve_a_matrix_with_other_values() {

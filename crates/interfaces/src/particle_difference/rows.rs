@@ -58,13 +58,39 @@ pub(super) fn own_share(coefficients: &[f64]) -> f64 {
     coefficients.iter().sum::<f64>() / coefficients.iter().map(|c| c.abs()).sum::<f64>()
 }
 
+/// In place of a row in which the own value of node i counts less than [`LEAST_OWN`], one of a fit in which all neighbours count alike,
+/// over the support and then over the enlarged one; that with the largest share where none reaches it. `attempt` makes such a row over
+/// some neighbours, and knows whether they are those of the enlarged support.
+pub(super) fn calmest<R, const D: usize>(
+    problem: &Problem<'_, D>,
+    i: usize,
+    first: R,
+    share: impl Fn(&R) -> f64,
+    mut attempt: impl FnMut(&[u32], bool) -> Option<R>,
+) -> R {
+    let (mut largest, mut best) = (share(&first), first);
+    for enlarged in [false, true] {
+        if largest >= LEAST_OWN {
+            break;
+        }
+        let all = enlarged.then(|| enlarged_support(problem, i));
+        let neighbors = all.as_deref().unwrap_or_else(|| problem.supports.lists.of(i));
+        if let Some(found) = attempt(neighbors, enlarged)
+            && share(&found) > largest
+        {
+            (largest, best) = (share(&found), found);
+        }
+    }
+    best
+}
+
 /// Error of an operator, over its natural size, from which a larger support is tried: what rounding of the values makes of it, and what is
 /// left of the reproduction. Supports that hardly determine all functions have 1e-8.
 const MOST_INEXACT: f64 = 1e-10;
 
 /// Share of the absolute entries of the others that the own one of a row has at least where u changes with time. In a row of the
 /// wrong sign the node grows by itself.
-pub(super) const LEAST_OWN: f64 = 0.2;
+const LEAST_OWN: f64 = 0.2;
 
 /// Makes stencils: plain ones where the support does not touch an interface, constrained ones where it does.
 pub(super) struct StencilMaker<'a, const D: usize> {
@@ -147,26 +173,16 @@ impl<'a, const D: usize> StencilMaker<'a, D> {
         Ok(Row { node: i, neighbors, coefficients, row_sum: -constant, rhs, kind, enlarged })
     }
 
-    /// In place of a stencil whose own value counts too little: all neighbours alike, then those of the neighbours, too; what comes
-    /// nearest where none does.
+    /// In place of a stencil whose own value counts too little: see [`calmest`].
     fn calmer(&self, i: usize, first: Stencil, scratch: &mut MakerScratch<'a, D>) -> Stencil {
         let Some((plain, constrained)) = &self.even else { return first };
         let operator = [self.diffusion(i)];
-        let mut best = first;
-        for larger in [false, true] {
-            let all = larger.then(|| enlarged_support(self.problem, i));
-            let neighbors = all.as_deref().unwrap_or_else(|| self.problem.supports.lists.of(i));
+        let share = |stencil: &Stencil| own_share(&stencil.coefficients);
+        calmest(self.problem, i, first, share, |neighbors, enlarged| {
             let found = self.attempt((plain, constrained), (i, neighbors), &operator, false, scratch);
-            if let Ok([found]) = found
-                && own_share(&found.coefficients) > own_share(&best.coefficients)
-            {
-                best = Stencil { enlarged: larger, ..found };
-            }
-            if self.decays(&best.coefficients) {
-                break;
-            }
-        }
-        best
+            let [found] = found.ok()?;
+            Some(Stencil { enlarged, ..found })
+        })
     }
 
     /// The row of a boundary node on which u is not prescribed: the conditions of its faces, added.

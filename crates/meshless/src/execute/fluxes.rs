@@ -51,19 +51,41 @@ pub(super) fn fluxes<const D: usize>(
         pieces.iter().map(|p| p.element.at).chain(seams.iter().map(|s| s.from)).collect();
     let samples = samples(plan, solved, &places)?;
     let (on_boundary, at_seams) = samples.split_at(pieces.len());
-    let mut parts: Vec<BoundaryFlux> = Vec::new();
-    for (entry, spec) in scene.boundaries.iter().enumerate() {
-        let of_entry = pieces.iter().zip(on_boundary).filter(|(piece, _)| piece.entry == entry);
-        let (mut flux, mut area) = (0.0, 0.0);
-        for (piece, sample) in of_entry {
-            let Some(sample) = sample else { continue };
-            flux += piece.element.area * entering(&problem, piece, sample);
-            area += piece.element.area;
-        }
-        parts.push(BoundaryFlux { face: spec.face.clone(), entry, flux, area });
+    let boundaries = through_boundary(scene, &problem, &pieces, on_boundary);
+    let interfaces = through_interfaces(scene, &problem, &seams, at_seams);
+    let left_over = left_over(plan, &boundaries);
+    Ok(FluxReport { boundaries, interfaces, left_over })
+}
+
+/// The totals of the entries of `[[boundaries]]`.
+fn through_boundary<const D: usize>(
+    scene: &Scene,
+    problem: &Problem<'_, D>,
+    pieces: &[Piece<D>],
+    samples: &[Option<Sample<D>>],
+) -> Vec<BoundaryFlux> {
+    let specs = scene.boundaries.iter().enumerate();
+    let mut parts: Vec<BoundaryFlux> = specs
+        .map(|(entry, spec)| BoundaryFlux { face: spec.face.clone(), entry, flux: 0.0, area: 0.0 })
+        .collect();
+    for (piece, sample) in pieces.iter().zip(samples) {
+        let Some(sample) = sample else { continue };
+        let part = &mut parts[piece.entry];
+        part.flux += piece.element.area * entering(problem, piece, sample);
+        part.area += piece.element.area;
     }
+    parts
+}
+
+/// The totals of the pairs of regions that meet.
+fn through_interfaces<const D: usize>(
+    scene: &Scene,
+    problem: &Problem<'_, D>,
+    seams: &[Seam<D>],
+    samples: &[Option<Sample<D>>],
+) -> Vec<InterfaceFlux> {
     let mut interfaces: Vec<InterfaceFlux> = Vec::new();
-    for (seam, sample) in seams.iter().zip(at_seams) {
+    for (seam, sample) in seams.iter().zip(samples) {
         let Some(sample) = sample else { continue };
         let names = seam.between.map(|region| scene.regions[region as usize].name.clone()).to_vec();
         let eta = problem.materials[sample.region as usize].diffusivity.at(&seam.from);
@@ -76,12 +98,16 @@ pub(super) fn fluxes<const D: usize>(
             None => interfaces.push(InterfaceFlux { between: names, flux, area: seam.element.area }),
         }
     }
+    interfaces
+}
+
+/// What enters less what leaves over half of the sum of their sizes, where nothing else is in the balance.
+fn left_over(plan: &Plan, parts: &[BoundaryFlux]) -> Option<f64> {
     let size: f64 = parts.iter().map(|part| part.flux.abs()).sum();
     let sourced =
         |effect: &Effect| matches!(effect, Effect::Source | Effect::FluxJump | Effect::Time | Effect::Slits);
     let balances = size > 0.0 && !plan.effects.iter().any(sourced);
-    let left_over = balances.then(|| 2.0 * parts.iter().map(|part| part.flux).sum::<f64>().abs() / size);
-    Ok(FluxReport { boundaries: parts, interfaces, left_over })
+    balances.then(|| 2.0 * parts.iter().map(|part| part.flux).sum::<f64>().abs() / size)
 }
 
 /// `eta du/dn` with n out of the domain: what enters.

@@ -1,7 +1,10 @@
-//! Independent references: dense matrices, elimination without subtraction, five-point grids.
+//! Independent references: dense matrices, elimination without subtraction, five-point grids, and how they are solved.
 #![allow(dead_code)] // each test program uses its own part
 
-use meshless_sparse::{Csr, DifferenceMatrix, Reduced};
+use meshless_sparse::{
+    Csr, DifferenceMatrix, MultigridParams, PreconditionerKind, Reduced, SolveInfo, SolverKind, SolverParams,
+    solve,
+};
 use proptest::prelude::ProptestConfig;
 
 /// So many cases of a property, or `PROPTEST_CASES`, which `ProptestConfig::with_cases` does not look at.
@@ -114,4 +117,37 @@ pub(crate) fn grid(
     let rhs = vec![h * h * f; m * m];
     let reduced = matrix.eliminate(&known, &rhs).expect("lengths fit");
     Grid { m, matrix, rhs, known, reduced }
+}
+
+/// Whether a point is in the disc of [`disc`].
+pub(crate) fn inside(x: [f64; 2]) -> bool {
+    (x[0] - 0.5).hypot(x[1] - 0.5) < 0.3
+}
+
+/// A disc of another diffusivity in the middle of a square.
+pub(crate) fn disc(m: usize, contrast: f64) -> Grid {
+    grid(m, |x| if inside(x) { contrast } else { 1.0 }, 1.0, |x| x[0])
+}
+
+/// GMRES with these levels, to 1e-10.
+pub(crate) fn with(levels: MultigridParams) -> SolverParams {
+    SolverParams {
+        kind: SolverKind::Gmres { restart: 60 },
+        preconditioner: PreconditionerKind::Multigrid(levels),
+        tolerance: 1e-10,
+        ..SolverParams::default()
+    }
+}
+
+/// With several levels on small grids, too.
+pub(crate) fn multigrid() -> SolverParams {
+    with(MultigridParams { coarsest: 40, ..MultigridParams::default() })
+}
+
+pub(crate) fn direct() -> SolverParams {
+    SolverParams { kind: SolverKind::Direct, ..SolverParams::default() }
+}
+
+pub(crate) fn iterations(matrix: &Csr, rhs: &[f64], params: &SolverParams) -> SolveInfo {
+    solve(matrix, rhs, params).expect("converges").1
 }

@@ -1,10 +1,11 @@
 //! Points of interfaces that carry an unknown, and interpolation between them.
 
+use meshless_geometry::Projection;
 use meshless_stencils::ConstrainedFit;
 
 use crate::Problem;
 use crate::method::InterfacePoint;
-use crate::particle_difference::feet::Feet;
+use crate::particle_difference::feet::{Feet, Foot};
 use crate::particle_difference::frame::Frame;
 
 /// Least distance of two points of an interface, over the spacing of nodes.
@@ -127,6 +128,12 @@ impl<const D: usize> InterfacePoints<D> {
 }
 
 impl<const D: usize> Point<D> {
+    /// The interface as seen from the point itself, from the first region.
+    pub(super) fn foot(&self) -> Foot<D> {
+        let at = Projection { point: self.at, normal: self.normal, distance: 0.0 };
+        Foot { beyond: self.between[1], at }
+    }
+
     fn is_on(&self, between: &[u16; 2], normal: &[f64; D]) -> bool {
         let parallel: f64 = (0..D).map(|k| self.normal[k] * normal[k]).sum();
         self.between == *between && parallel >= SAME_LEG

@@ -3,13 +3,13 @@
 use meshless_stencils::{FitParams, FitScratch, Functional, LocalFit, StencilError, Weight};
 
 use super::joint::JointFit;
-use super::points::{InterfacePoints, separation};
+use super::points::{InterfacePoints, Point, separation};
 use crate::gfdm::add_correction;
 use crate::local::enlarged_support;
 use crate::particle_difference::feet::{Feet, Foot, may_jump};
 use crate::particle_difference::fit::ConstrainedScratch;
 use crate::particle_difference::leg::GRADIENT_STEP;
-use crate::particle_difference::rows::{LEAST_OWN, own_share};
+use crate::particle_difference::rows::{calmest, own_share};
 use crate::particle_difference::{ParticleDifferenceParams, Wedge};
 use crate::{MethodError, Problem};
 
@@ -136,8 +136,13 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         Centre { at, region, node: i, feet: self.feet.of(i), weight: self.params.weight, corrected: false }
     }
 
-    /// In place of a row whose own value counts too little once the jumps are eliminated: all neighbours alike, then those of the
-    /// neighbours, too; what comes nearest where none does. As for [`ParticleDifference`](super::super::ParticleDifference).
+    /// From the side of the first of the regions that a point is between; `feet` is the point's own.
+    fn at_point<'f>(&self, point: &Point<D>, feet: &'f [Foot<D>]) -> Centre<'f, D> {
+        let region = point.between[0];
+        Centre { at: point.at, region, node: point.node, feet, weight: self.params.weight, corrected: false }
+    }
+
+    /// In place of a row whose own value counts too little once the jumps are eliminated: see [`calmest`].
     fn calmer(
         &self,
         first: (ExtendedRow, f64),
@@ -146,25 +151,14 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         of_points: &[ExtendedRow],
         scratch: &mut Scratch<'a, D>,
     ) -> (ExtendedRow, f64) {
-        let (problem, i) = (self.problem, centre.node);
+        let i = centre.node;
         let even = Centre { weight: Weight::Uniform, ..*centre };
-        let (mut share, mut best) = (first.0.own_share(i, of_points), first);
-        for larger in [false, true] {
-            if share >= LEAST_OWN {
-                break;
-            }
-            let all = larger.then(|| enlarged_support(problem, i));
-            let neighbors = all.as_deref().unwrap_or_else(|| problem.supports.lists.of(i));
-            let mut row = ExtendedRow { enlarged: larger, ..ExtendedRow::default() };
-            let Ok(given) = self.apply(&even, neighbors, functional, factor, scratch, &mut row) else {
-                continue;
-            };
-            let found = row.own_share(i, of_points);
-            if found > share {
-                (share, best) = (found, (row, given));
-            }
-        }
-        best
+        let share = |(row, _): &(ExtendedRow, f64)| row.own_share(i, of_points);
+        calmest(self.problem, i, first, share, |neighbors, enlarged| {
+            let mut row = ExtendedRow { enlarged, ..ExtendedRow::default() };
+            let given = self.apply(&even, neighbors, functional, factor, scratch, &mut row).ok()?;
+            Some((row, given))
+        })
     }
 
     /// The conditions of the faces of a boundary node, added: `a u + flux = g`, the flux as a derivative along a vector
@@ -214,17 +208,8 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         scratch: &mut Scratch<'a, D>,
     ) -> Result<ExtendedRow, MethodError> {
         let point = self.points.list[k];
-        let [first, second] = point.between;
-        let at = meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 };
-        let feet = [Foot { beyond: second, at }];
-        let centre = Centre {
-            at: point.at,
-            region: first,
-            node: point.node,
-            feet: &feet,
-            weight: self.params.weight,
-            corrected: false,
-        };
+        let feet = [point.foot()];
+        let centre = self.at_point(&point, &feet);
         let (mut row, given) = self.fitted(&centre, &Functional::Value, 1.0, scratch)?;
         row.rhs = value - given;
         row.row_sum = row.nodes.iter().map(|(_, c)| c).sum();
@@ -251,19 +236,8 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         let mut row = ExtendedRow::default();
         let factor = h * (eta[1] - eta[0]) / sum;
         if factor != 0.0 {
-            let foot = Foot {
-                beyond: second,
-                at: meshless_geometry::Projection { point: point.at, normal: point.normal, distance: 0.0 },
-            };
-            let feet = [foot];
-            let centre = Centre {
-                at: point.at,
-                region: first,
-                node: point.node,
-                feet: &feet,
-                weight: self.params.weight,
-                corrected: false,
-            };
+            let feet = [point.foot()];
+            let centre = self.at_point(&point, &feet);
             let slope = Functional::Directional(point.normal);
             let (fitted, given) = self.fitted(&centre, &slope, factor, scratch)?;
             row = ExtendedRow { rhs: -given, ..fitted };
