@@ -34,8 +34,9 @@ pub(super) struct Half<'a> {
     pub(super) zeros: &'a [f64],
 }
 
-impl Columns for Half<'_> {
-    fn fill(&self, first: usize, width: usize, out: &mut [f64]) {
+impl Half<'_> {
+    /// As [`Columns::fill`].
+    pub(super) fn fill(&self, first: usize, width: usize, out: &mut [f64]) {
         let Self { values, n, machine, zeros } = *self;
         let end = n.min(first + width);
         // Above the diagonal numbers of columns lie together, below it those of rows.

@@ -2,7 +2,6 @@
 
 use super::aligned::Aligned;
 use super::columns::Half;
-use super::separable::Columns;
 use crate::fft::{Even, FromReals, MOST, Machine, ToReals};
 
 /// Transforms of one length: `X_k = x_0 + (-1)^k x_n + 2 sum x_j cos(pi j k / n)`, n + 1 numbers each (DCT-I), which is the

@@ -18,6 +18,7 @@ mod real;
 mod recipe;
 mod sample;
 mod separable;
+mod square;
 mod tile;
 
 use crate::error::FreeSpaceError;

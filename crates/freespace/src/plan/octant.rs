@@ -173,7 +173,7 @@ impl Octant {
         let directions =
             std::array::from_fn(|a| Direction::new(shape[a], half[a], if open[a] { 2 } else { 0 }));
         let done = Separable::new(directions, false, 1.0 / (periods * all));
-        let mut values = done.of(&Given { values: &values, across: shape[1] * shape[2] });
+        let mut values = done.of(Given { values: &values, across: shape[1] * shape[2] });
         let volume: f64 =
             (0..3).filter(|a| open[*a]).map(|a| spacing[a] * (2 * (half[a] - 1)) as f64).product();
         values[0] += Screened::rim(count, radius)? * volume / all;

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::columns::{Evaluated, Half, Known};
-use super::separable::{Separable, triangle};
-use crate::fft::Machine;
+use super::columns::{Evaluated, Known};
+use super::separable::Separable;
+use super::square::Square;
 use crate::kernel::{Pieces, Radial, Smooth};
 
 /// The offsets `0..shape` of each direction, the last one running fastest.
@@ -22,15 +22,15 @@ impl Samples {
         let kernel: &dyn Radial = pieces.as_ref().map_or(kernel, |pieces| pieces);
         if let Some(spacing) = self.repeats() {
             let (table, across) = (self.table(kernel, spacing), self.across());
-            return done.of(&Known { table: &table, across: &across });
+            return done.of(Known { table: &table, across: &across });
         }
         if self.is_square() {
-            let (values, n, machine) = (self.half(kernel), self.shape[2], Machine::new::<f64>());
-            return done.of(&Half { values: &values, n, machine: &machine, zeros: &vec![0.0; n] });
+            let (unit, [squares, ..]) = self.squares_along();
+            return done.of(Square::new(kernel, unit, &squares, done));
         }
         let (unit, [along, y, z]) = self.squares_along();
         let across: Vec<f64> = y.iter().flat_map(|y| z.iter().map(move |z| y + z)).collect();
-        done.of(&Evaluated { kernel, unit, along: &along, across: &across })
+        done.of(Evaluated { kernel, unit, along: &along, across: &across })
     }
 
     /// Whether all three directions are the same.
@@ -100,24 +100,6 @@ impl Samples {
             (0..self.shape[a]).map(|i| (i as f64 * ratio).powi(2)).collect()
         };
         (unit, std::array::from_fn(along))
-    }
-
-    /// Half of a square, row by row.
-    fn half(self, kernel: &dyn Radial) -> Vec<f64> {
-        let n = self.shape[2];
-        let (unit, [x, _, z]) = self.squares_along();
-        let mut values = vec![0.0; triangle(n, n, n)];
-        let (mut rows, mut rest) = (Vec::with_capacity(n), &mut values[..]);
-        for i in 0..n {
-            let (row, others) = std::mem::take(&mut rest).split_at_mut(n - i);
-            rows.push(row);
-            rest = others;
-        }
-        rows.into_par_iter().enumerate().for_each(|(i, row)| {
-            row.iter_mut().zip(&z[i..]).for_each(|(value, z)| *value = x[i] + z);
-            kernel.values(unit, row);
-        });
-        values
     }
 
     /// Values by the square of the distance in units of the spacing, of those that there are.

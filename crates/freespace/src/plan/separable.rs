@@ -14,6 +14,14 @@ const BLOCK: usize = 32;
 pub(super) trait Columns: Sync {
     /// Numbers of the columns from `first` on, a row of `width` for each place; zero where there is no column.
     fn fill(&self, first: usize, width: usize, out: &mut [f64]);
+
+    /// Memory that is no longer needed once the columns are made, for the result.
+    fn room(self) -> Vec<f64>
+    where
+        Self: Sized,
+    {
+        Vec::new()
+    }
 }
 
 /// What is done with each direction.
@@ -37,11 +45,37 @@ impl Separable {
 
     /// Lines of the last direction, those of the second one behind each other; of a symmetric array those of [`triangle`]. Where there is no
     /// second direction, the numbers of [`Self::together`] lines lie together.
-    pub(super) fn of(&self, columns: &dyn Columns) -> Vec<f64> {
+    pub(super) fn of(&self, columns: impl Columns) -> Vec<f64> {
         let [_, y, z] = &self.directions;
         let all = if self.symmetric { triangle(y.from, y.from, y.from) } else { y.from * z.from };
-        let blocks = self.first(columns, all);
-        if self.is_flat() { self.lines(&blocks) } else { self.planes(&blocks, all) }
+        let blocks = self.first(&columns, all);
+        let mut out = columns.room();
+        if out.len() < self.count() {
+            out = vec![0.0; self.count()];
+        }
+        out.truncate(self.count());
+        if self.is_flat() {
+            self.lines(&blocks, &mut out);
+        } else {
+            self.planes(&blocks, all, &mut out);
+        }
+        out
+    }
+
+    /// Numbers of the result.
+    pub(super) fn count(&self) -> usize {
+        let [x, y, z] = &self.directions;
+        let lines = match (self.is_flat(), self.symmetric) {
+            (true, _) => x.to.next_multiple_of(self.together()),
+            (false, true) => triangle(x.to, x.to, x.to),
+            (false, false) => x.to * y.to,
+        };
+        lines * z.to
+    }
+
+    /// Columns that are made together.
+    pub(super) fn width(&self) -> usize {
+        self.directions[0].width()
     }
 
     /// Lines whose numbers lie together.
@@ -54,10 +88,9 @@ impl Separable {
     }
 
     /// The last direction where there is no second one.
-    fn lines(&self, blocks: &[Vec<f64>]) -> Vec<f64> {
-        let [x, _, z] = &self.directions;
+    fn lines(&self, blocks: &[Vec<f64>], out: &mut [f64]) {
+        let z = &self.directions[2];
         let lanes = self.together();
-        let mut out = vec![0.0; x.to.next_multiple_of(lanes) * z.to];
         out.par_chunks_mut(z.width() * z.to).enumerate().for_each_init(
             || z.scratch(),
             |scratch, (index, out)| {
@@ -72,15 +105,12 @@ impl Separable {
                 }
             },
         );
-        out
     }
 
     /// The last two directions.
-    fn planes(&self, blocks: &[Vec<f64>], all: usize) -> Vec<f64> {
+    fn planes(&self, blocks: &[Vec<f64>], all: usize, out: &mut [f64]) {
         let [x, y, z] = &self.directions;
-        let lines = if self.symmetric { triangle(x.to, x.to, x.to) } else { x.to * y.to };
-        let mut out = vec![0.0; lines * z.to];
-        let (mut parts, mut rest) = (Vec::with_capacity(x.to), &mut out[..]);
+        let (mut parts, mut rest) = (Vec::with_capacity(x.to), out);
         for plane in 0..x.to {
             let (part, others) = std::mem::take(&mut rest).split_at_mut((y.to - self.skipped(plane)) * z.to);
             parts.push(part);
@@ -102,7 +132,6 @@ impl Separable {
                 scratch.third(self.skipped(plane), part);
             },
         );
-        out
     }
 
     /// The indices of all numbers in their order.
@@ -248,9 +277,9 @@ mod tests {
             let done = Separable::new(directions, symmetric, 0.5);
             let across: Vec<usize> = (0..y).flat_map(|j| (j..z).map(move |k| j * j + k * k)).collect();
             let values = if symmetric {
-                done.of(&Known { table: &table, across: &across })
+                done.of(Known { table: &table, across: &across })
             } else {
-                done.of(&Given { values: &before, across: y * z })
+                done.of(Given { values: &before, across: y * z })
             };
             let scale = expected.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
             let mut count = 0;
