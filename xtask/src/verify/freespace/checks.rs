@@ -19,7 +19,7 @@ const FROM_BELOW: &str = "orders are reached from below as the mesh is refined, 
     reaches round-off first";
 
 /// Errors on the torus over those on the bump.
-const CURVATURE: [f64; 2] = [0.85, 1.15];
+pub(super) const CURVATURE: [f64; 2] = [0.85, 1.15];
 
 /// How far from figures that others measured for the same formulas: they have two or three digits.
 const DIGITS: [f64; 2] = [0.97, 1.03];

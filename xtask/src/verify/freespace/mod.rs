@@ -90,9 +90,10 @@ fn refined(options: &Options) -> Vec<Result<Run, String>> {
     }
     if options.wants(patches::CASE, METHOD) && options.effort > Effort::Quick {
         for layout in patches_in_space::LAYOUTS {
-            progress(&format!("{SUITE} {} {}", patches::CASE, layout.0));
-            for n in patches_in_space::BASES {
-                runs.extend(patches_in_space::ORDERS.map(|order| patches_in_space::run(layout, order, n)));
+            for n in layout.bases {
+                progress(&format!("{SUITE} {} {} {n}", patches::CASE, layout.name));
+                let orders = layout.orders(options.effort).iter();
+                runs.extend(orders.map(|&order| patches_in_space::run(layout, order, n)));
             }
         }
     }

@@ -1,7 +1,10 @@
 //! What must hold with refinement patches.
 
+use super::checks::CURVATURE;
 use super::patches::{CASE, COARSE, PAYING, SCALES, UNIFORM};
-use super::patches_in_space::{self, FINE, ONE, ONE_BY_M6, TWO};
+use super::patches_in_space::{
+    self, FINE, ONE, ONE_BY_M6, TORUS_BASES, TORUS_BY_M6, TORUS_ONE, TORUS_ORDERS, TWO,
+};
 use super::runs::Run;
 use super::trees::{TREES, levels};
 use super::{PATCH_ORDERS, SCALES_ORDER, paper};
@@ -92,6 +95,7 @@ pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
     }
     if options.effort > Effort::Quick {
         in_space(&error, claims);
+        torus(runs, options.effort, &error, claims);
     }
     scales(runs, options, claims);
 }
@@ -117,6 +121,31 @@ fn in_space(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Clai
             claims.within(CASE, format!("m = {order}: error of {name} over that of {over}"), ratio, band);
         }
     }
+}
+
+/// The torus of figure 5 (b): what holds on one mesh holds with a patch, and M6* limits it as it limits the bump in two dimensions, whose
+/// radius has as many cells at N/2.
+fn torus(
+    runs: &[Run],
+    effort: Effort,
+    error: &dyn Fn(&str, usize, usize) -> Option<f64>,
+    claims: &mut Claims,
+) {
+    let [before, finest] = TORUS_BASES;
+    let orders = if effort == Effort::Full { &PATCH_ORDERS[..] } else { &TORUS_ORDERS };
+    for &order in orders {
+        let whole = runs.iter().find(|r| r.case == "torus" && r.kernel == paper(order) && r.n == finest);
+        let ratio = error(TORUS_ONE, order, finest).zip(whole).map(|(patch, one)| patch / one.l2);
+        let claim = format!("figure 5, {TORUS_ONE}, m = {order}: error over that of one fine mesh");
+        claims.within(CASE, claim, ratio, [0.98, 1.02]);
+        let pair = error(TORUS_BY_M6, order, finest).zip(error("one patch, M6*", order, finest / 2));
+        let claim =
+            format!("figure 5 (b), {TORUS_BY_M6}, m = {order}: error over that of the bump in 2-D at N/2");
+        claims.within(CASE, claim, pair.map(|(torus, bump)| torus / bump), CURVATURE);
+    }
+    let rate =
+        error(TORUS_BY_M6, 10, before).zip(error(TORUS_BY_M6, 10, finest)).map(|(a, b)| (a / b).log2());
+    claims.at_least(CASE, format!("figure 5 (b), {TORUS_BY_M6}: order at m = 10"), rate, M6_ORDER);
 }
 
 /// Figures at N0 = 256.

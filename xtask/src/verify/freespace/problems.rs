@@ -98,35 +98,40 @@ pub(super) fn patch(n: usize) -> Result<Problem<2>, String> {
 }
 
 /// Radius of the torus and of its core.
-const RADIUS: f64 = 0.5;
+pub(super) const RADIUS: f64 = 0.5;
 
-/// The velocity of a torus of vorticity whose azimuthal vector potential is a bump, section 3.1 in 3-D.
+/// Vorticity round the axis of the torus, velocity away from it and along it, and the distance from it. The azimuthal vector potential is a
+/// bump, section 3.1 in 3-D.
+fn torus_at([x, y, z]: [f64; 3]) -> [f64; 4] {
+    let r = x.hypot(y);
+    let square = RADIUS * RADIUS;
+    let [f, slope, second] = bump(((r - RADIUS).powi(2) + z * z) / square);
+    let outward = slope * (r - RADIUS) / square;
+    let vorticity = -((second + slope) / square + outward / r - f / (r * r));
+    [vorticity, -slope * z / square, outward + f / r, r]
+}
+
+/// The vorticity of the torus.
+pub(super) fn torus_vorticity(p: [f64; 3]) -> [f64; 3] {
+    let [around, _, _, r] = torus_at(p);
+    [-p[1] * around / r, p[0] * around / r, 0.0]
+}
+
+/// Its velocity.
+pub(super) fn torus_velocity(p: [f64; 3]) -> [f64; 3] {
+    let [_, away, along, r] = torus_at(p);
+    [p[0] * away / r, p[1] * away / r, along]
+}
+
+/// The velocity of a torus of vorticity.
 pub(super) fn torus(n: usize) -> Result<Problem<3>, String> {
     let mesh =
         mesh([-2.0 * RADIUS, -2.0 * RADIUS, -RADIUS], [2.0 * RADIUS, 2.0 * RADIUS, RADIUS], [n, n, n / 2])?;
-    // Vorticity around the axis, velocity away from it and along it, and the distance from it.
-    let at = |[x, y, z]: [f64; 3]| {
-        let r = x.hypot(y);
-        let square = RADIUS * RADIUS;
-        let [f, slope, second] = bump(((r - RADIUS).powi(2) + z * z) / square);
-        let outward = slope * (r - RADIUS) / square;
-        let vorticity = -((second + slope) / square + outward / r - f / (r * r));
-        (r, vorticity, -slope * z / square, outward + f / r)
-    };
-    let around = |p: [f64; 3]| at(p).1 / at(p).0;
-    let away = |p: [f64; 3]| at(p).2 / at(p).0;
+    let components = |of: fn([f64; 3]) -> [f64; 3]| (0..3).map(|a| mesh.sample(|p| of(p)[a])).collect();
     Ok(Problem {
-        sources: vec![
-            mesh.sample(|p| -p[1] * around(p)),
-            mesh.sample(|p| p[0] * around(p)),
-            vec![0.0; mesh.len()],
-        ],
+        sources: components(torus_vorticity),
         wanted: (0..3).map(|axis| Output::Curl { axis }).collect(),
-        exact: vec![
-            mesh.sample(|p| p[0] * away(p)),
-            mesh.sample(|p| p[1] * away(p)),
-            mesh.sample(|p| at(p).3),
-        ],
+        exact: components(torus_velocity),
         mesh,
     })
 }
