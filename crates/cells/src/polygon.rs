@@ -1,7 +1,7 @@
 //! The cell in two dimensions: a polygon.
 
 use crate::body::{Measure, PLANE_TOLERANCE, Piece, Source};
-use crate::root::bracketed_root;
+use crate::root::{bracketed_root, largest_magnitude};
 
 /// A corner, and the source of the edge that leads from it to the next corner.
 #[derive(Debug, Clone, Copy)]
@@ -66,13 +66,7 @@ impl Polygon {
     pub(crate) fn cut(&mut self, level: impl Fn([f64; 2]) -> f64, source: Source) -> Option<f64> {
         self.heights.clear();
         self.heights.extend(self.corners.iter().map(|corner| level(corner.at)));
-        let mut largest = 0.0_f64;
-        for height in &self.heights {
-            if height.is_nan() {
-                return None;
-            }
-            largest = largest.max(height.abs());
-        }
+        let largest = largest_magnitude(&self.heights)?;
         if self.heights.iter().any(|&height| height > 0.0) {
             self.split(source, |a, b, start, end| bracketed_root(start, end, |t| level(between(a, b, t))))?;
         }

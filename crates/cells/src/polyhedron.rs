@@ -5,7 +5,7 @@
 //! Whatever round-off does to the decisions, the surface stays closed.
 
 use crate::body::{Measure, PLANE_TOLERANCE, Piece, Source};
-use crate::root::bracketed_root;
+use crate::root::{bracketed_root, largest_magnitude};
 
 type Point = [f64; 3];
 
@@ -126,13 +126,7 @@ impl Polyhedron {
     pub(crate) fn cut(&mut self, level: impl Fn(Point) -> f64, source: Source) -> Option<f64> {
         self.heights.clear();
         self.heights.extend(self.surface.vertices.iter().map(|&vertex| level(vertex)));
-        let mut largest = 0.0_f64;
-        for height in &self.heights {
-            if height.is_nan() {
-                return None;
-            }
-            largest = largest.max(height.abs());
-        }
+        let largest = largest_magnitude(&self.heights)?;
         if self.heights.iter().any(|&height| height > 0.0) {
             self.split(source, |a, b, start, end| bracketed_root(start, end, |t| level(between(a, b, t))))?;
         }

@@ -1,4 +1,4 @@
-//! The root of a level set on an edge.
+//! A level set on the edges of a cell: its size, and its root on one of them.
 
 /// Change of the parameter between two steps, as a fraction of the edge, at which a root counts as found: a few units
 /// in the last place, so that the cells on both sides of an edge find the same point to round-off.
@@ -9,6 +9,11 @@ const SECANT_STEPS: usize = 30;
 
 /// Bisections that bring any bracket within the edge below the tolerance.
 const BISECTIONS: usize = 60;
+
+/// The largest magnitude of numbers; `None` if one is not a number.
+pub(crate) fn largest_magnitude(values: &[f64]) -> Option<f64> {
+    values.iter().try_fold(0.0_f64, |largest, value| (!value.is_nan()).then(|| largest.max(value.abs())))
+}
 
 /// Finds `t` in `[0, 1]` where `value` changes sign, given `start = value(0) <= 0 < end = value(1)`.
 ///

@@ -69,6 +69,29 @@ pub struct Discretization {
 }
 
 impl Discretization {
+    /// Rows of the values of the nodes alone: none that were split already, none of further unknowns, no mass but volumes, no gradients.
+    pub fn of_nodes(
+        (rows, rhs): (DifferenceMatrix, Vec<f64>),
+        volumes: Vec<f64>,
+        kinds: Vec<RowKind>,
+        counts: Counts,
+        stencil_seconds: f64,
+    ) -> Self {
+        let (constants, mass, interface_points, gradients) = (None, None, Vec::new(), None);
+        Self {
+            rows,
+            rhs,
+            constants,
+            mass,
+            kinds,
+            volumes,
+            counts,
+            stencil_seconds,
+            interface_points,
+            gradients,
+        }
+    }
+
     /// The gradient of a solution at every node, in its own region: from what was kept with the rows, else by the method.
     ///
     /// # Errors

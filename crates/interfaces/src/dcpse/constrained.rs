@@ -5,6 +5,7 @@
 //! `eta_j dP_j/dn - eta_i dP_i/dn = b`, and the equation of each side, all at c. The value of the field of region i
 //! beyond the interface is that of `P_i`. On the boundary there is one side with its conditions and its equation.
 
+use meshless_sparse::RowBuilder;
 use meshless_stencils::{ConstrainedFit, Monomials, StencilError};
 
 use super::foot::{Foot, LocalEquation, equation, jump, tangents};
@@ -34,6 +35,14 @@ pub(super) struct Ghost {
     pub(super) constant: f64,
     /// One minus the sum of the coefficients, without cancellation.
     pub(super) defect: f64,
+}
+
+impl Ghost {
+    /// What the value adds to the row of its node, in which it stands `-factor` times, but for the constant.
+    pub(super) fn subtract(&self, factor: f64, out: &mut RowBuilder) {
+        self.nodes.iter().zip(&self.coefficients).for_each(|(&p, e)| out.push(p as usize, -factor * e));
+        out.add_to_row_sum(factor * self.defect);
+    }
 }
 
 /// Makes ghosts.

@@ -56,20 +56,9 @@ impl<const D: usize> Method<D> for ImmersedInterface {
             cells: 0,
         };
         table.rows().iter().for_each(|&i| kinds[i as usize] = RowKind::Constrained);
-        Rows { problem, kinds: &kinds, known: &known, operators: &operators, table: &table }.assemble().map(
-            |(rows, rhs, volumes)| Discretization {
-                rows,
-                rhs,
-                constants: None,
-                mass: None,
-                kinds,
-                volumes,
-                counts,
-                stencil_seconds,
-                interface_points: Vec::new(),
-                gradients: None,
-            },
-        )
+        let rows = Rows { problem, kinds: &kinds, known: &known, operators: &operators, table: &table };
+        let (rows, rhs, volumes) = rows.assemble()?;
+        Ok(Discretization::of_nodes((rows, rhs), volumes, kinds, counts, stencil_seconds))
     }
 }
 
@@ -132,8 +121,7 @@ impl<const D: usize> Rows<'_, D> {
     fn boundary_row(&self, i: usize, out: &mut RowBuilder) {
         let scale = self.boundary_scale(i);
         if let Some(value) = self.table.on_boundary(i) {
-            value.nodes.iter().zip(&value.coefficients).for_each(|(&p, e)| out.push(p as usize, -scale * e));
-            out.add_to_row_sum(scale * value.defect);
+            value.subtract(scale, out);
         }
     }
 

@@ -143,18 +143,7 @@ impl Parts {
             .map(|i| self.cells[i].as_ref().map_or_else(|| strong_measure(problem, i), |row| row.volume))
             .collect();
         let Self { kinds, counts, stencil_seconds, .. } = self;
-        Ok(Discretization {
-            rows,
-            rhs,
-            constants: None,
-            mass: None,
-            kinds,
-            volumes,
-            counts,
-            stencil_seconds,
-            interface_points: Vec::new(),
-            gradients: None,
-        })
+        Ok(Discretization::of_nodes((rows, rhs), volumes, kinds, counts, stencil_seconds))
     }
 }
 

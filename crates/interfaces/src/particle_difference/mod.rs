@@ -153,16 +153,5 @@ fn assemble<const D: usize>(
         ..Counts::default()
     };
     let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();
-    Ok(Discretization {
-        rows: matrix,
-        rhs,
-        constants: None,
-        mass: None,
-        kinds,
-        volumes,
-        counts,
-        stencil_seconds,
-        interface_points: Vec::new(),
-        gradients: None,
-    })
+    Ok(Discretization::of_nodes((matrix, rhs), volumes, kinds, counts, stencil_seconds))
 }

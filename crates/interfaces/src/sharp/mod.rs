@@ -210,16 +210,6 @@ fn assemble<const D: usize>(
         ..Counts::default()
     };
     let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();
-    Ok(Discretization {
-        rows: matrix,
-        rhs,
-        constants,
-        mass: mass.transpose()?,
-        kinds,
-        volumes,
-        counts,
-        stencil_seconds,
-        interface_points: Vec::new(),
-        gradients: None,
-    })
+    let rows = Discretization::of_nodes((matrix, rhs), volumes, kinds, counts, stencil_seconds);
+    Ok(Discretization { constants, mass: mass.transpose()?, ..rows })
 }

@@ -90,18 +90,7 @@ impl<const D: usize> Method<D> for SurfaceReaction {
         let matrix = rows.matrix()?;
         let rhs = parallel::map(kinds.len(), |i| rows.rhs(i));
         let volumes = problem.cloud.spacing().iter().map(|h| h.powi(D as i32)).collect();
-        Ok(Discretization {
-            rows: matrix,
-            rhs,
-            constants: None,
-            mass: None,
-            interface_points: Vec::new(),
-            gradients: None,
-            kinds,
-            volumes,
-            counts,
-            stencil_seconds,
-        })
+        Ok(Discretization::of_nodes((matrix, rhs), volumes, kinds, counts, stencil_seconds))
     }
 }
 
@@ -221,8 +210,7 @@ impl<const D: usize> Rows<'_, D> {
     fn boundary_row(&self, i: usize, out: &mut RowBuilder) {
         let scale = self.boundary_scale(i);
         if let Some(value) = self.on_boundary(i) {
-            value.nodes.iter().zip(&value.coefficients).for_each(|(&p, e)| out.push(p as usize, -scale * e));
-            out.add_to_row_sum(scale * value.defect);
+            value.subtract(scale, out);
         }
     }
 
