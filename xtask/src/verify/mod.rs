@@ -29,7 +29,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use claims::{Claim, Verdict};
-use options::Options;
+use options::{Effort, Options};
 use study::Study;
 
 pub(crate) fn run(arguments: &[String]) -> ExitCode {
@@ -54,6 +54,11 @@ pub(crate) fn run(arguments: &[String]) -> ExitCode {
     let start = Instant::now();
     let studies: Vec<Study> = options.suites.iter().map(|suite| suite.run(&options)).collect();
     runner::progress("");
+    if studies.iter().all(Study::is_empty) {
+        let quick = if options.effort == Effort::Quick { ", or the case is not part of --quick" } else { "" };
+        eprintln!("error: nothing was run: the method does not take part in the case{quick}");
+        return ExitCode::from(crate::USAGE_ERROR);
+    }
     let claims: Vec<&Claim> = studies.iter().flat_map(|s| &s.claims).collect();
     print_table(&claims);
     match write(&options, &studies) {

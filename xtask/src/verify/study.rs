@@ -72,6 +72,11 @@ pub(crate) struct Study {
 }
 
 impl Study {
+    /// Whether nothing was run: no outcomes, and no claims but that nothing failed.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.outcomes.is_empty() && self.claims.iter().all(|claim| claim.case == "all")
+    }
+
     #[cfg(test)]
     pub(crate) fn new(suite: &'static str) -> Self {
         Self { suite, outcomes: Vec::new(), claims: Vec::new(), sections: Vec::new() }
@@ -106,4 +111,20 @@ pub(crate) fn push(outcomes: &mut Vec<Outcome>, mut outcome: Outcome) {
         (outcome.row.order_l2, outcome.row.order_linf) = (l2, linf);
     }
     outcomes.push(outcome);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Study;
+    use crate::verify::claims::Claims;
+
+    #[test]
+    fn that_nothing_failed_is_no_run() {
+        let claimed = |case: &'static str| {
+            let mut claims = Claims::new("x", true);
+            claims.at_most(case, "a figure", Some(0.0), 1.0);
+            Study { claims: claims.by_case(&[case]), ..Study::new("x") }
+        };
+        assert!(Study::new("x").is_empty() && claimed("all").is_empty() && !claimed("disc").is_empty());
+    }
 }

@@ -23,8 +23,8 @@ const SUITE: &str = "freespace";
 pub(super) const ABOUT: &str = "Poisson's equation in free space: the bump in 2-D and the torus in 3-D of Hejlesen and Walther (2016) with Gaussian \
     kernels of order 2 to 20, the spectral and the truncated kernel; the product of bumps that another code was measured on.";
 
-pub(super) const CASES: [&str; 6] =
-    ["bump", "torus", "product-2d", "product-3d", patches::CASE, patches::SCALES];
+pub(super) const CASES: [&str; 7] =
+    ["bump", "torus", "product-2d", "product-3d", patches::CASE, patches_in_space::CASE, patches::SCALES];
 
 const METHOD: &str = "free-space";
 
@@ -88,10 +88,10 @@ fn refined(options: &Options) -> Vec<Result<Run, String>> {
             }
         }
     }
-    if options.wants(patches::CASE, METHOD) && options.effort > Effort::Quick {
+    if options.wants(patches_in_space::CASE, METHOD) && options.effort > Effort::Quick {
         for layout in patches_in_space::LAYOUTS {
             for n in layout.bases {
-                progress(&format!("{SUITE} {} {} {n}", patches::CASE, layout.name));
+                progress(&format!("{SUITE} {} {} {n}", patches_in_space::CASE, layout.name));
                 let orders = layout.orders(options.effort).iter();
                 runs.extend(orders.map(|&order| patches_in_space::run(layout, order, n)));
             }

@@ -3,7 +3,7 @@
 use super::checks::CURVATURE;
 use super::patches::{CASE, COARSE, PAYING, SCALES, UNIFORM};
 use super::patches_in_space::{
-    self, FINE, ONE, ONE_BY_M6, TORUS_BASES, TORUS_BY_M6, TORUS_ONE, TORUS_ORDERS, TWO,
+    self, CASE as IN_SPACE, FINE, ONE, ONE_BY_M6, TORUS_BASES, TORUS_BY_M6, TORUS_ONE, TORUS_ORDERS, TWO,
 };
 use super::runs::Run;
 use super::trees::{TREES, levels};
@@ -32,14 +32,18 @@ const FIGURES: [(&str, [f64; 4]); 2] = [
     ("ratio 3, shift", [7.4e-6, 2.5e-8, 1.9e-10, 2.8e-12]),
 ];
 
+/// The error of a way of refining, by order and cells of the base mesh.
+type Errors<'a> = dyn Fn(&str, usize, usize) -> Option<f64> + 'a;
+
 pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
     let sizes = super::bases(options.effort);
     let (finest, before) = (sizes[sizes.len() - 1], sizes[sizes.len() - 2]);
-    let error = |name: &str, order: usize, n: usize| {
+    let found = |case: &str, name: &str, order: usize, n: usize| {
         runs.iter()
-            .find(|r| r.case == CASE && r.variant == name && r.kernel == paper(order) && r.n == n)
+            .find(|r| r.case == case && r.variant == name && r.kernel == paper(order) && r.n == n)
             .map(|r| r.l2)
     };
+    let error = |name: &str, order: usize, n: usize| found(CASE, name, order, n);
     let rate = |name: &str, order: usize| {
         error(name, order, before)
             .zip(error(name, order, finest))
@@ -94,14 +98,15 @@ pub(super) fn all(runs: &[Run], options: &Options, claims: &mut Claims) {
         figures(&error, claims);
     }
     if options.effort > Effort::Quick {
-        in_space(&error, claims);
-        torus(runs, options.effort, &error, claims);
+        let in_3d = |name: &str, order: usize, n: usize| found(IN_SPACE, name, order, n);
+        in_space(&in_3d, claims);
+        torus(runs, options.effort, [&in_3d, &error], claims);
     }
     scales(runs, options, claims);
 }
 
 /// The same in three dimensions.
-fn in_space(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Claims) {
+fn in_space(error: &Errors<'_>, claims: &mut Claims) {
     let [before, finest] = patches_in_space::BASES;
     for order in patches_in_space::ORDERS {
         let rate = |name: &str| {
@@ -111,45 +116,40 @@ fn in_space(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Clai
         };
         let difference = rate(ONE).zip(rate(FINE)).map(|(patch, one)| (patch - one).abs());
         let claim = format!("{ONE}, m = {order}: order less that on one fine mesh");
-        claims.at_most(CASE, claim, difference, ORDER_MARGIN);
+        claims.at_most(IN_SPACE, claim, difference, ORDER_MARGIN);
         if order > 4 {
             let claim = format!("figure 5 (b), {ONE_BY_M6}: order at m = {order}");
-            claims.at_least(CASE, claim, rate(ONE_BY_M6), M6_ORDER);
+            claims.at_least(IN_SPACE, claim, rate(ONE_BY_M6), M6_ORDER);
         }
         for (name, over, band) in [(ONE, FINE, [0.98, 1.02]), (TWO, ONE, [0.99, 1.01])] {
             let ratio = error(name, order, finest).zip(error(over, order, finest)).map(|(a, b)| a / b);
-            claims.within(CASE, format!("m = {order}: error of {name} over that of {over}"), ratio, band);
+            claims.within(IN_SPACE, format!("m = {order}: error of {name} over that of {over}"), ratio, band);
         }
     }
 }
 
 /// The torus of figure 5 (b): what holds on one mesh holds with a patch, and M6* limits it as it limits the bump in two dimensions, whose
 /// radius has as many cells at N/2.
-fn torus(
-    runs: &[Run],
-    effort: Effort,
-    error: &dyn Fn(&str, usize, usize) -> Option<f64>,
-    claims: &mut Claims,
-) {
+fn torus(runs: &[Run], effort: Effort, [error, in_2d]: [&Errors<'_>; 2], claims: &mut Claims) {
     let [before, finest] = TORUS_BASES;
     let orders = if effort == Effort::Full { &PATCH_ORDERS[..] } else { &TORUS_ORDERS };
     for &order in orders {
         let whole = runs.iter().find(|r| r.case == "torus" && r.kernel == paper(order) && r.n == finest);
         let ratio = error(TORUS_ONE, order, finest).zip(whole).map(|(patch, one)| patch / one.l2);
         let claim = format!("figure 5, {TORUS_ONE}, m = {order}: error over that of one fine mesh");
-        claims.within(CASE, claim, ratio, [0.98, 1.02]);
-        let pair = error(TORUS_BY_M6, order, finest).zip(error("one patch, M6*", order, finest / 2));
+        claims.within(IN_SPACE, claim, ratio, [0.98, 1.02]);
+        let pair = error(TORUS_BY_M6, order, finest).zip(in_2d("one patch, M6*", order, finest / 2));
         let claim =
             format!("figure 5 (b), {TORUS_BY_M6}, m = {order}: error over that of the bump in 2-D at N/2");
-        claims.within(CASE, claim, pair.map(|(torus, bump)| torus / bump), CURVATURE);
+        claims.within(IN_SPACE, claim, pair.map(|(torus, bump)| torus / bump), CURVATURE);
     }
     let rate =
         error(TORUS_BY_M6, 10, before).zip(error(TORUS_BY_M6, 10, finest)).map(|(a, b)| (a / b).log2());
-    claims.at_least(CASE, format!("figure 5 (b), {TORUS_BY_M6}: order at m = 10"), rate, M6_ORDER);
+    claims.at_least(IN_SPACE, format!("figure 5 (b), {TORUS_BY_M6}: order at m = 10"), rate, M6_ORDER);
 }
 
 /// Figures at N0 = 256.
-fn figures(error: &dyn Fn(&str, usize, usize) -> Option<f64>, claims: &mut Claims) {
+fn figures(error: &Errors<'_>, claims: &mut Claims) {
     for (name, figures) in FIGURES {
         for (order, figure) in [4, 6, 8, 10].into_iter().zip(figures) {
             let claim = format!("{name}, N0 = 256, m = {order}: error over {figure:.1e}, measured before");

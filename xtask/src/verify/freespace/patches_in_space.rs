@@ -7,10 +7,11 @@ use meshless_freespace::{
 };
 
 use super::PATCH_ORDERS;
-use super::patches::CASE;
 use super::problems;
 use super::runs::Run;
 use crate::verify::options::Effort;
+
+pub(super) const CASE: &str = "patches-3d";
 
 /// What fills a part of space: its source, and the field that should come of it.
 #[derive(Debug, Clone, Copy)]
@@ -101,10 +102,10 @@ pub(super) const LAYOUTS: [Layout; 6] = [
     Layout { name: TORUS_BY_M6, superposition: Superposition::M6Star, ..TORUS_WHOLE },
 ];
 
-pub(super) const FINE: &str = "3-D, one fine mesh";
-pub(super) const ONE: &str = "3-D, one patch, shift";
-pub(super) const TWO: &str = "3-D, two bordering patches, shift";
-pub(super) const ONE_BY_M6: &str = "3-D, one patch, M6*";
+pub(super) const FINE: &str = "one fine mesh";
+pub(super) const ONE: &str = "one patch, shift";
+pub(super) const TWO: &str = "two bordering patches, shift";
+pub(super) const ONE_BY_M6: &str = "one patch, M6*";
 pub(super) const TORUS_ONE: &str = "torus, one patch, shift";
 pub(super) const TORUS_BY_M6: &str = "torus, one patch, M6*";
 

@@ -12,7 +12,7 @@ use crate::verify::study::{Section, Table};
 const MOST_CURVES: usize = 12;
 
 /// Titles and texts of the cases.
-const ABOUT: [(&str, &str); 6] = [
+const ABOUT: [(&str, &str); 7] = [
     (
         "Bump in 2-D",
         "Velocity of a circular patch of vorticity with compact support, section 3.1 of Hejlesen and Walther: relative L2 error.",
@@ -24,6 +24,10 @@ const ABOUT: [(&str, &str); 6] = [
         "Refinement patches",
         "The bump of radius 1/2 with patches, figures 5 and 6: relative L2 error over all points that no patch covers, or inside of the patch \
          where it cuts the source or there are two levels.",
+    ),
+    (
+        "Refinement patches in 3-D",
+        "A potential that is a bump of radius 1/2, and the torus of figure 5 (b), N cells across both: relative L2 error of the gradient, or of the velocity, where patches are.",
     ),
     (
         "A source with two scales",
