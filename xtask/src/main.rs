@@ -1,5 +1,12 @@
 //! Housekeeping of the workspace: verification sweeps, benchmarks, and the invariants that the documents promise.
-#![allow(clippy::print_stdout, reason = "the commands here exist to print")]
+
+/// A line on the terminal; whoever stops reading it does not stop the work.
+macro_rules! say {
+    ($($arg:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($arg)*);
+    }};
+}
 
 mod bench;
 mod tidy;
@@ -25,7 +32,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (command, rest) = arguments.split_first().map_or(("", &[][..]), |(c, rest)| (c.as_str(), rest));
     if rest.iter().any(|option| option == "--help" || option == "-h") {
-        print!("{USAGE}");
+        say!("{}", USAGE.trim_end());
         return ExitCode::SUCCESS;
     }
     match command {
@@ -33,7 +40,7 @@ fn main() -> ExitCode {
         "bench" => bench::run(rest),
         "tidy" => tidy::run(rest),
         "" | "help" | "-h" | "--help" => {
-            print!("{USAGE}");
+            say!("{}", USAGE.trim_end());
             ExitCode::SUCCESS
         }
         unknown => {

@@ -54,11 +54,11 @@ pub(crate) fn run(arguments: &[String]) -> ExitCode {
             return ExitCode::from(crate::USAGE_ERROR);
         }
     };
-    println!("{} threads; medians of several runs", rayon::current_num_threads());
+    say!("{} threads; medians of several runs", rayon::current_num_threads());
     for (name, about, bench) in chosen {
-        println!("\n{name}: {about}");
+        say!("\n{name}: {about}");
         match bench() {
-            Ok(tables) => tables.iter().for_each(|t| println!("\n{t}")),
+            Ok(tables) => tables.iter().for_each(|t| say!("\n{t}")),
             Err(error) => {
                 eprintln!("error: {name}: {error}");
                 return ExitCode::FAILURE;

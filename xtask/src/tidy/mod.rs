@@ -37,19 +37,19 @@ pub(crate) fn run(arguments: &[String]) -> ExitCode {
     for (name, check) in CHECKS {
         match check(&root) {
             Ok(found) => {
-                println!("{} {name}", if found.is_empty() { "ok  " } else { "FAIL" });
-                found.iter().for_each(|what| println!("       {what}"));
+                say!("{} {name}", if found.is_empty() { "ok  " } else { "FAIL" });
+                found.iter().for_each(|what| say!("       {what}"));
                 wrong += found.len();
             }
             Err(error) => {
-                println!("FAIL {name}\n       cannot read the workspace: {error}");
+                say!("FAIL {name}\n       cannot read the workspace: {error}");
                 wrong += 1;
             }
         }
     }
     match sources::summary(&root) {
-        Ok(summary) => println!("\n{summary}"),
-        Err(error) => println!("\nno summary: {error}"),
+        Ok(summary) => say!("\n{summary}"),
+        Err(error) => say!("\nno summary: {error}"),
     }
     if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

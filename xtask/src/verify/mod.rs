@@ -60,20 +60,17 @@ pub(crate) fn run(arguments: &[String]) -> ExitCode {
         return ExitCode::from(crate::USAGE_ERROR);
     }
     let claims: Vec<&Claim> = studies.iter().flat_map(|s| &s.claims).collect();
+    let written = write(&options, &studies);
     print_table(&claims);
-    match write(&options, &studies) {
-        Ok(()) => println!("\nreport: {}", options.out.join("report.html").display()),
+    match written {
+        Ok(()) => say!("\nreport: {}", options.out.join("report.html").display()),
         Err(error) => {
             eprintln!("error: cannot write to {}: {error}", options.out.display());
             return ExitCode::FAILURE;
         }
     }
     let runs: usize = studies.iter().map(|s| s.outcomes.len()).sum();
-    println!(
-        "{runs} runs in {:.1} s on {} threads",
-        start.elapsed().as_secs_f64(),
-        rayon::current_num_threads()
-    );
+    say!("{runs} runs in {:.1} s on {} threads", start.elapsed().as_secs_f64(), rayon::current_num_threads());
     let failed = claims.iter().filter(|c| c.verdict == Verdict::Fails).count();
     if failed == 0 {
         ExitCode::SUCCESS
@@ -88,16 +85,16 @@ fn print_table(claims: &[&Claim]) {
     for claim in claims {
         if case != (claim.suite, claim.case) {
             case = (claim.suite, claim.case);
-            println!("\n{} / {}", claim.suite, claim.case);
+            say!("\n{} / {}", claim.suite, claim.case);
         }
         let mark = match claim.verdict {
             Verdict::Holds => "ok       ",
             Verdict::Explained(_) => "explained",
             Verdict::Fails => "FAILS    ",
         };
-        println!("  {mark} {}: {} (expected {})", claim.claim, claim.measured, claim.expected);
+        say!("  {mark} {}: {} (expected {})", claim.claim, claim.measured, claim.expected);
         if let Verdict::Explained(why) = claim.verdict {
-            println!("            {why}");
+            say!("            {why}");
         }
     }
 }
