@@ -122,6 +122,16 @@ pub(crate) struct Cycle<'a> {
 }
 
 impl Cycle<'_> {
+    /// The correction d of the residual r, by one of the methods.
+    fn run(&mut self, method: Method, r: &mut [f64], d: &mut [f64]) -> CycleEnd {
+        match method {
+            Method::BiCgStab { l } => bicgstab_cycle(self, l, r, d),
+            Method::Gmres { restart } => gmres_cycle(self, restart, r, d),
+            Method::Idr { s } => idr_cycle(self, s, r, d),
+            Method::Cg => cg_cycle(self, r, d),
+        }
+    }
+
     /// `y = A M^-1 x`, with `M^-1 x` left in `z`.
     pub(crate) fn apply(&mut self, x: &[f64], z: &mut [f64], y: &mut [f64]) {
         self.m.apply(x, z, self.scratch);
@@ -182,12 +192,7 @@ pub(crate) fn iterate(
             correction.fill(0.0);
         }
         let correction = further.as_deref_mut().unwrap_or(&mut run.x);
-        let end = match method {
-            Method::BiCgStab { l } => bicgstab_cycle(&mut cycle, l, &mut residual, correction),
-            Method::Gmres { restart } => gmres_cycle(&mut cycle, restart, &mut residual, correction),
-            Method::Idr { s } => idr_cycle(&mut cycle, s, &mut residual, correction),
-            Method::Cg => cg_cycle(&mut cycle, &mut residual, correction),
-        };
+        let end = cycle.run(method, &mut residual, correction);
         run.products += cycle.products;
         if let Some(correction) = &further {
             axpy(1.0, correction, &mut run.x);

@@ -74,6 +74,13 @@ struct Centre<'f, const D: usize> {
     corrected: bool,
 }
 
+impl<'f, const D: usize> Centre<'f, D> {
+    /// The interface to a region that it sees.
+    fn foot_towards(&self, label: u16) -> Option<&'f Foot<D>> {
+        self.feet.iter().find(|foot| foot.beyond == label)
+    }
+}
+
 impl<'a, const D: usize> RowMaker<'a, D> {
     pub(super) fn new(
         problem: &'a Problem<'a, D>,
@@ -270,25 +277,26 @@ impl<'a, const D: usize> RowMaker<'a, D> {
         Ok((row, given))
     }
 
-    /// Adds `factor` times an operator on the polynomial of the centre's side to a row; returns what is given of it.
-    fn apply(
+    /// Whether u and its flux go on from the centre's region to another one as if there were no interface.
+    fn goes_on(&self, centre: &Centre<'_, D>, label: u16) -> bool {
+        label == centre.region || !may_jump(self.problem, centre.region, label)
+    }
+
+    /// The coefficients of an operator on the polynomial of the centre's side, for the nodes that it can be fitted to.
+    fn operator(
         &self,
         centre: &Centre<'_, D>,
         neighbors: &[u32],
         functional: &Functional<D>,
-        factor: f64,
         scratch: &mut Scratch<'a, D>,
-        row: &mut ExtendedRow,
-    ) -> Result<f64, MethodError> {
-        let (problem, x) = (self.problem, &centre.at);
-        let (points, radii, labels) = (problem.cloud.points(), problem.supports.radius, problem.labels);
+    ) -> Result<(), MethodError> {
+        let x = &centre.at;
+        let (points, radii) = (self.problem.cloud.points(), self.problem.supports.radius);
         let Scratch { fit, nodes, offsets, weights, coefficients, .. } = scratch;
-        let foot_towards = |label: u16| centre.feet.iter().find(|foot| foot.beyond == label);
-        let same = |label: u16| label == centre.region || !may_jump(problem, centre.region, label);
         nodes.clear();
         nodes.extend(neighbors.iter().copied().filter(|&j| {
-            let label = labels[j as usize];
-            same(label) || foot_towards(label).is_some()
+            let label = self.problem.labels[j as usize];
+            self.goes_on(centre, label) || centre.foot_towards(label).is_some()
         }));
         nodes.push(centre.node as u32);
         offsets.clear();
@@ -311,15 +319,30 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             self.fit.correction(own, fit, &mut null).map_err(located)?;
             add_correction(&mut coefficients[..own], &null[..own]);
         }
+        Ok(())
+    }
+
+    /// Adds `factor` times an operator on the polynomial of the centre's side to a row; returns what is given of it.
+    fn apply(
+        &self,
+        centre: &Centre<'_, D>,
+        neighbors: &[u32],
+        functional: &Functional<D>,
+        factor: f64,
+        scratch: &mut Scratch<'a, D>,
+        row: &mut ExtendedRow,
+    ) -> Result<f64, MethodError> {
+        self.operator(centre, neighbors, functional, scratch)?;
+        let problem = self.problem;
         let mut given = 0.0;
-        for (&j, &c) in nodes.iter().zip(coefficients.iter()) {
+        for (&j, &c) in scratch.nodes.iter().zip(&scratch.coefficients) {
             row.nodes.push((j, factor * c));
-            let label = labels[j as usize];
-            if same(label) {
+            let label = problem.labels[j as usize];
+            if self.goes_on(centre, label) {
                 continue;
             }
-            let Some(foot) = foot_towards(label) else { continue };
-            let y = &points[j as usize];
+            let Some(foot) = centre.foot_towards(label) else { continue };
+            let y = &problem.cloud.points()[j as usize];
             let plane: f64 = (0..D).map(|k| (y[k] - foot.at.point[k]) * foot.at.normal[k]).sum();
             let own =
                 self.feet.towards(j as usize, centre.region).filter(|_| self.params.wedge != Wedge::Plane);
