@@ -114,6 +114,15 @@ fn methods_without_gradients_up_to_interfaces_are_refused() {
              [[regions]]\nname = \"b\"\ndiffusivity = {other}\n{ENDS}"
         )
     };
+    // The plan takes none of them where fluxes are asked for, whatever else would do.
+    for rest in ["[accuracy]\ntolerance = 0.03\n", "[time]\nend = 10\n"] {
+        let scene =
+            Scene::parse(&(text(1.0) + rest + "[output]\nfluxes = true\n"), "fluxes.toml").expect("a scene");
+        assert_eq!(Plan::new(&scene).expect("a plan").method.name, MethodName::Sharp, "{rest}");
+    }
+    let found =
+        fluxes(&(text(1.0) + "[time]\nend = 10\n"), MethodName::Auto).expect("the plan takes another one");
+    assert!((found.boundaries[0].flux - 4.0 / 3.0).abs() < 1e-3, "{found:?}");
     let error = fluxes(&text(1.0), MethodName::GfdmHybrid).expect_err("no gradients").to_string();
     assert!(error.contains("output.fluxes") && error.contains("\"sharp\""), "{error}");
     let found = fluxes(&text(2.0), MethodName::GfdmClassical).expect("nothing jumps");

@@ -73,6 +73,82 @@ fn polynomial_solutions_are_exact_also_in_corners() {
     }
 }
 
+/// A linear solution in materials of 3 and 1: what the flux jumps by is constant on each side of a region, and another on the next.
+#[test]
+fn jumps_of_the_flux_may_differ_from_side_to_side() {
+    let square = "box = { min = [0.313, 0.291], max = [0.717, 0.688] }";
+    let sides =
+        "if(max(0.313 - x, x - 0.717) > max(0.291 - y, y - 0.688), if(x < 0.5, 2, -2), if(y < 0.5, 4, -4))";
+    let triangle = "polygon = [[0.2, 0.3], [0.8, 0.3], [0.2, 0.6]]";
+    // Normals -y, -x and (1, 2)/sqrt(5), told from the lines through two sides.
+    let edges = "if(y - 0.3 < min(x - 0.2, (1.4 - x - 2*y)/sqrt(5)), 4, if(x - 0.2 < (1.4 - x - 2*y)/sqrt(5), 2, -2*sqrt(5)))";
+    let lens = "intersection = [{ sphere = { center = [0.4, 0.5], radius = 0.3 } }, { half_space = { point = [0.5, 0.5], normal = [1, 0.2] } }]";
+    let arcs = "if(x - 0.5 + 0.2*(y - 0.5) > 1.01*(sqrt((x - 0.4)^2 + (y - 0.5)^2) - 0.3), -2.8/sqrt(1.04), -2*(x - 0.4 + 2*(y - 0.5))/0.3)";
+    for (shape, jump) in [(square, sides), (triangle, edges), (lens, arcs)] {
+        for layout in ["irregular", "grid", "scattered"] {
+            let text = format!(
+                "title = \"Sides\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [1, 1] }}\n[points]\nspacing = 0.05\n\
+                 layout = \"{layout}\"\n[[regions]]\nname = \"in\"\n{shape}\ndiffusivity = 3\nexact = \"x + 2*y\"\n\
+                 [[regions]]\nname = \"out\"\ndiffusivity = 1\nexact = \"x + 2*y\"\n\
+                 [[interfaces]]\nbetween = [\"in\", \"out\"]\nflux_jump = \"{jump}\"\n\
+                 [[boundaries]]\nface = \"all\"\ndirichlet = \"x + 2*y\"\n"
+            );
+            let [l2, _, gradient] = errors(&text, 4);
+            assert!(l2 < 1e-12 && gradient < 1e-10, "{layout}, {shape}: {l2} {gradient}");
+        }
+    }
+    let cylinder = "title = \"Pin\"\ndimension = 3\n[domain]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n[points]\nspacing = 0.12\n\
+        [[regions]]\nname = \"in\"\ncylinder = { point = [0.5, 0.5, 0.5], axis = [0, 0, 1], radius = 0.27, length = 0.5 }\n\
+        diffusivity = 3\nexact = \"x + 2*z\"\n[[regions]]\nname = \"out\"\ndiffusivity = 1\nexact = \"x + 2*z\"\n\
+        [[interfaces]]\nbetween = [\"in\", \"out\"]\n\
+        flux_jump = \"if(abs(z - 0.5) - 0.25 > sqrt((x - 0.5)^2 + (y - 0.5)^2) - 0.27, if(z < 0.5, 4, -4), -2*(x - 0.5)/0.27)\"\n\
+        [[boundaries]]\nface = \"all\"\ndirichlet = \"x + 2*z\"\n";
+    let [l2, ..] = errors(cylinder, 4);
+    assert!(l2 < 1e-11, "{l2}");
+}
+
+/// Data that say on which side of a corner they are by the position, for a face of several sides and for all faces at once.
+#[test]
+fn fluxes_may_differ_from_side_to_side_of_the_boundary() {
+    let head = "[points]\nspacing = 0.05\n[[regions]]\nname = \"plate\"\ndiffusivity = 2\nexact = \"x + 2*y\"\n\
+                [[boundaries]]\nface = \"all\"\nwhere = \"y < 1e-9\"\ndirichlet = \"x\"\n";
+    let triangle = format!(
+        "title = \"Triangle\"\ndimension = 2\n[domain]\npolygon = [[0, 0], [1, 0], [0.5, 1]]\n{head}\
+         [[boundaries]]\nface = \"all\"\nneumann = \"if(x < 0.5, 0, 4/sqrt(5))\"\n"
+    );
+    let plate = |rest: &str| {
+        format!(
+            "title = \"Plate\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [1, 1] }}\n{head}{rest}"
+        )
+    };
+    let one = plate("[[boundaries]]\nface = \"all\"\nflux = \"if(x > 1 - 1e-9, 2, if(x < 1e-9, -2, 4))\"\n");
+    let each = plate(
+        "[[boundaries]]\nface = \"all\"\nwhere = \"x > 1 - 1e-9\"\nneumann = 1\n\
+         [[boundaries]]\nface = \"all\"\nwhere = \"x < 1e-9\"\nneumann = -1\n\
+         [[boundaries]]\nface = \"all\"\nrobin = { a = 1, b = 3, g = \"x + 14\" }\n",
+    );
+    for text in [triangle, one, each] {
+        for method in ["sharp", "gfdm-classical"] {
+            let scene = text.clone() + &format!("[method]\nname = \"{method}\"\n");
+            let solution =
+                solve_scene(&Scene::parse(&scene, "sides.toml").expect("a scene")).expect("it is solved");
+            let found = solution.report.errors.expect("an exact solution").l2;
+            assert!(found < 1e-11, "{method}: {found}\n{text}");
+        }
+    }
+}
+
+/// The corner of a plate is cut off by an inclusion nearer to it than the next node, and u is prescribed there.
+#[test]
+fn a_prescribed_value_that_stands_alone_is_no_gap() {
+    let text = "title = \"Corner\"\ndimension = 2\n[domain]\nbox = { min = [0, 0], max = [1, 1] }\n[points]\nspacing = 0.05\n\
+                [[regions]]\nname = \"in\"\nhalf_space = { point = [0.015, 0.015], normal = [-1, -1] }\ndiffusivity = 3\nexact = \"x + y\"\n\
+                [[regions]]\nname = \"out\"\ndiffusivity = 1\nexact = \"3*x + 3*y - 0.06\"\n\
+                [[boundaries]]\nface = \"all\"\ndirichlet = \"if(x + y < 0.03, 3*x + 3*y - 0.06, x + y)\"\n";
+    let [l2, ..] = errors(text, 4);
+    assert!(l2 < 1e-11, "{l2}");
+}
+
 #[test]
 fn a_ball_in_three_dimensions() {
     let [l2, ..] = errors(&ball(100.0, 0.1, 0.25, Regularity::Irregular(1)), 4);

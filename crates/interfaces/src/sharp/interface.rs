@@ -3,6 +3,7 @@
 use meshless_neighbors::CellList;
 
 use super::connected::ConnectedParts;
+use super::corner::Corner;
 use crate::parallel;
 use crate::{Field, InterfaceJump, MethodError, Problem};
 
@@ -67,6 +68,7 @@ pub(super) struct InterfacePoints<const D: usize> {
 }
 
 /// A place on the interface between two labels, the lower one first.
+#[derive(Clone, Copy)]
 struct Candidate<const D: usize> {
     at: [f64; D],
     normal: [f64; D],
@@ -85,8 +87,10 @@ impl<const D: usize> InterfacePoints<D> {
         let candidates: Vec<Candidate<D>> =
             parallel::collect(problem.cloud.len(), |i, all| all.extend(candidates_of(problem, i, tolerance)));
         let kept = thin(&candidates)?;
-        let found = parallel::try_map_with(kept.len(), Vec::new, |found, k| {
-            let candidate = &candidates[kept[k]];
+        let candidates: Vec<Candidate<D>> =
+            parallel::collect(kept.len(), |k, all| beside_corners(problem, candidates[kept[k]], all));
+        let found = parallel::try_map_with(candidates.len(), Vec::new, |found, k| {
+            let candidate = &candidates[k];
             Ok::<_, MethodError>(
                 point(problem, parts, nodes, candidate, found)?.map(|point| (point, candidate.at)),
             )
@@ -136,6 +140,24 @@ fn thin<const D: usize>(candidates: &[Candidate<D>]) -> Result<Vec<usize>, Metho
             .for_each(|&j| passed[j as usize] = true);
     }
     Ok(kept)
+}
+
+/// A candidate, or where the flux jumps in a corner a place on each of the pieces that meet there in its place.
+fn beside_corners<const D: usize>(
+    problem: &Problem<'_, D>,
+    candidate: Candidate<D>,
+    all: &mut Vec<Candidate<D>>,
+) {
+    let Candidate { at, normal, labels, spacing } = candidate;
+    let jump = problem.jump_between(labels[0], labels[1]);
+    let pieces = match jump.and_then(|(jump, _)| jump.flux.as_ref()) {
+        Some(_) => Corner { problem, labels, at, normal, spacing }.pieces(),
+        None => Vec::new(),
+    };
+    if pieces.is_empty() {
+        all.push(candidate);
+    }
+    all.extend(pieces.into_iter().map(|(at, normal)| Candidate { at, normal, labels, spacing }));
 }
 
 /// What holds at a candidate; `None` where no node of one of its regions is near.

@@ -144,6 +144,14 @@ impl<'a, const D: usize> Maker<'a, D> {
         })
     }
 
+    /// The same for a gradient: the value of the node, which may be prescribed, need not be what others predict.
+    pub(super) fn factor_for_gradient(&self, i: usize, scratch: &mut Scratch<D>) -> Result<(), MethodError> {
+        let Err(error) = self.factor(i, scratch) else { return Ok(()) };
+        let center = &self.problem.cloud.points()[i];
+        let at = (center, self.unknowns.part[i], Heard::All);
+        self.factor_at(at, scratch, |_| true).map(|_| ()).ok_or(error)
+    }
+
     /// In time a row that answers to a source by the wrong sign would make its node grow by itself, and so may one to which the
     /// rates of the nodes around it are more than its own. Of what fits may hear, the first is taken that leads to neither; then
     /// the first with the right sign; then an equation without du/dt.

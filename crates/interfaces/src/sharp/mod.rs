@@ -8,6 +8,7 @@
 mod adapted;
 mod basis;
 mod connected;
+mod corner;
 mod dense;
 mod fit;
 mod harmonic;

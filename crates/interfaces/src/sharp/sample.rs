@@ -59,7 +59,7 @@ impl<const D: usize> Maker<'_, D> {
         values: &Values<'_>,
         scratch: &mut Scratch<D>,
     ) -> Result<[f64; D], MethodError> {
-        self.factor(i, scratch)?;
+        self.factor_for_gradient(i, scratch)?;
         Ok(std::array::from_fn(|axis| self.evaluate(Some(axis), values, scratch)))
     }
 
@@ -70,7 +70,7 @@ impl<const D: usize> Maker<'_, D> {
 
     /// The gradient at node i, in terms of the unknowns.
     pub(super) fn gradient_at(&self, i: usize, scratch: &mut Scratch<D>) -> Result<GradientRow, MethodError> {
-        self.factor(i, scratch)?;
+        self.factor_for_gradient(i, scratch)?;
         Ok(self.gradient_row(scratch))
     }
 
@@ -103,7 +103,7 @@ impl<const D: usize> Maker<'_, D> {
         u: &[f64],
         scratch: &mut Scratch<D>,
     ) -> Result<[f64; D], MethodError> {
-        self.factor(i, scratch)?;
+        self.factor_for_gradient(i, scratch)?;
         let Scratch { stencil, fit, combination, .. } = scratch;
         let reference: Vec<f64> = (0..stencil.parts.len())
             .map(|part| {

@@ -7,7 +7,7 @@ use super::fields::{field, not_finite};
 use crate::Error;
 use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
 
-/// How far from an edge between pieces of one face the condition on either is told, in spacings.
+/// How far from an edge between pieces of the boundary the condition on either is told, in spacings.
 const BESIDE: f64 = 1e-5;
 
 /// The conditions in the order of the scene: the first whose face and `where` match counts.
@@ -121,7 +121,7 @@ impl<const D: usize> Boundary<D> {
                 let index = self
                     .entry(touch.face, place)
                     .ok_or_else(|| missing_condition(scene, cloud, node.node as usize, x))?;
-                let condition = self.entries[index].kind.at(x);
+                let condition = self.entries[index].kind.beside(x, place);
                 check(scene, &scene.boundaries[index], &condition, x)?;
                 conditions.push(condition);
             }
@@ -131,12 +131,12 @@ impl<const D: usize> Boundary<D> {
     }
 }
 
-/// Where a node is, as its place on one of several pieces of the same face is told: a little away from the edge between them. A
-/// `where` that holds on the one piece alone then says nothing of the others.
+/// Where a node is, as its place on one of several pieces of the boundary is told: a little away from the edge between them. A
+/// `where` that holds on the one piece alone, or data that jump at the edge, then say nothing of the others.
 fn beside_edges<const D: usize>(cloud: &Cloud<D>, node: &BoundaryNode<D>, touch: &Touch<D>) -> [f64; D] {
     let i = node.node as usize;
     let mut x = cloud.points()[i];
-    let others = node.touches.iter().filter(|other| other.face == touch.face && other.normal != touch.normal);
+    let others = node.touches.iter().filter(|other| other.normal != touch.normal);
     for other in others {
         let along: f64 = (0..D).map(|k| other.normal[k] * touch.normal[k]).sum();
         for (k, x) in x.iter_mut().enumerate() {
@@ -154,11 +154,25 @@ impl<const D: usize> BoundaryData<D> for Boundary<D> {
 
 impl<const D: usize> Kind<D> {
     fn at(&self, x: &[f64; D]) -> Condition {
+        self.with(|f| f.at(x))
+    }
+
+    /// What holds at an edge, told at a place `beside` it on one piece of the boundary: fluxes, which have as many values there as
+    /// pieces meet, are continued linearly from that piece to the edge.
+    fn beside(&self, x: &[f64; D], beside: &[f64; D]) -> Condition {
+        if x == beside || matches!(self, Self::Dirichlet(_)) {
+            return self.at(x);
+        }
+        let further = std::array::from_fn(|k| 2.0 * beside[k] - x[k]);
+        self.with(|f| 2.0 * f.at(beside) - f.at(&further))
+    }
+
+    fn with(&self, value: impl Fn(&Field<D>) -> f64) -> Condition {
         match self {
-            Self::Dirichlet(f) => Condition::Dirichlet(f.at(x)),
-            Self::Neumann(f) => Condition::Neumann(f.at(x)),
-            Self::Flux(f) => Condition::Flux(f.at(x)),
-            Self::Robin { a, b, g } => Condition::Robin { a: a.at(x), b: b.at(x), g: g.at(x) },
+            Self::Dirichlet(f) => Condition::Dirichlet(value(f)),
+            Self::Neumann(f) => Condition::Neumann(value(f)),
+            Self::Flux(f) => Condition::Flux(value(f)),
+            Self::Robin { a, b, g } => Condition::Robin { a: value(a), b: value(b), g: value(g) },
         }
     }
 }

@@ -46,7 +46,8 @@ impl AccuracyPlan {
             why: format!("a tolerance of {tolerance:.1e}: {why}"),
         };
         let jumps = survey.has_interface();
-        if jumps && tolerance >= COARSE {
+        // Fluxes take gradients up to interfaces.
+        if jumps && tolerance >= COARSE && !scene.output.fluxes {
             return choice(
                 MethodName::GfdmHybrid,
                 None,
@@ -57,8 +58,8 @@ impl AccuracyPlan {
             let order = self.order_of(SHARP_ORDERS[scene.dimension - 1]);
             return choice(MethodName::Sharp, order, "high order on both sides of interfaces");
         }
-        if jumps && scene.method.order.is_some_and(|order| order > 2 && Sharp::offers(order, scene.dimension))
-        {
+        let high = scene.method.order.is_some_and(|order| order > 2 && Sharp::offers(order, scene.dimension));
+        if jumps && (high || scene.output.fluxes) {
             return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");
         }
         if jumps {

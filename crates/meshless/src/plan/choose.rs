@@ -94,7 +94,9 @@ fn at_interfaces(scene: &Scene) -> (MethodName, &'static str) {
     let order = scene.method.order;
     if labels {
         (MethodName::GfdmHybrid, "interfaces are known to a share of the spacing only: balances there")
-    } else if scene.time.is_some() || order.is_some_and(|order| !Sharp::offers(order, scene.dimension)) {
+    } else if scene.time.is_some() && !scene.output.fluxes
+        || order.is_some_and(|order| !Sharp::offers(order, scene.dimension))
+    {
         (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere")
     } else {
         (MethodName::Sharp, "something jumps at an interface: one polynomial on each side, joined there")
