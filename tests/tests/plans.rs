@@ -177,3 +177,53 @@ fn the_solver_fits_size_and_matrix() {
     assert_eq!(solver(smooth, "name = \"gfdm-classical\""), multigrid);
     assert_eq!(solver(ball("0.05"), "solver = \"bicgstab\""), krylov);
 }
+
+/// With and without contacts, conditions that switch, oscillate and exchange heat, one to three dimensions.
+#[test]
+fn the_prediction_of_the_steps_is_within_a_factor_of_three() {
+    use meshless_tests::unsteady::{ball, composite, driven, sandwich, slab, switched};
+    let shock = |text: String| text.replace("initial = ", "initial = 1 # ");
+    let exchange = |text: String| {
+        text.replacen("dirichlet = 0", "robin = { a = 2, b = 1, g = \"if(t < 0.1, 2, sin(20*t))\" }", 1)
+    };
+    let scenes = [
+        slab(1, 0.05, 1e-4),
+        slab(2, 0.1, 1e-3),
+        slab(3, 0.2, 1e-3),
+        ball(0.25, 1e-4),
+        composite(2, 0.1, 10.0, 1e-4),
+        composite(2, 0.1, 1e-6, 1e-3),
+        shock(composite(2, 0.1, 1e6, 1e-4)),
+        shock(sandwich(2, 0.1, 1e4, 1e-3)),
+        switched(2, 0.1, 1e-4),
+        driven(1e-4),
+        exchange(composite(2, 0.1, 0.1, 1e-4)),
+    ];
+    for text in scenes {
+        let scene = Scene::parse(&text, "small.toml").expect("the scene can be solved");
+        let plan = Plan::new(&scene).expect("the scene can be solved");
+        let foreseen = plan.predicted.steps.expect("it has steps in time");
+        assert!(plan.to_string().contains(&format!("about {:.0} steps in time", foreseen.steps)), "{plan}");
+        let solution = execute(&scene, &plan, &mut Silent).expect("the scene can be solved");
+        let taken = solution.report.time.expect("it is unsteady");
+        for (foreseen, taken) in [(foreseen.steps, taken.steps), (foreseen.matrices, taken.matrices)] {
+            let ratio = foreseen / taken as f64;
+            assert!((1.0 / 3.0..3.0).contains(&ratio), "{foreseen} for {taken}:\n{text}");
+        }
+    }
+}
+
+#[test]
+fn the_prediction_counts_the_steps() {
+    use meshless_tests::unsteady::slab;
+    let plan = |text: &str| Plan::new(&Scene::parse(text, "slab.toml").expect("a scene")).expect("a plan");
+    let (loose, tight) = (plan(&slab(2, 0.05, 1e-3)).predicted, plan(&slab(2, 0.05, 1e-5)).predicted);
+    let text = slab(2, 0.05, 1e-3);
+    let steady = plan(&text.split("[time]").next().expect("text").replace("*t", "")).predicted;
+    let steps = |p: &meshless::plan::Predicted| p.steps.map_or(0.0, |time| time.steps);
+    assert!(steady.steps.is_none() && steps(&tight) > 5.0 * steps(&loose));
+    assert!(tight.seconds > 2.0 * loose.seconds && loose.seconds > steady.seconds);
+    // A run that takes far too many is planned in no time.
+    let endless = plan(&text.replace("dirichlet = 0", "dirichlet = \"sin(1e6*t)\"")).predicted;
+    assert!(steps(&endless) > 1e5, "{endless:?}");
+}

@@ -45,6 +45,9 @@ struct PredictedJson {
     seconds: f64,
     estimate_seconds: f64,
     memory_mb: f64,
+    /// In time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steps: Option<f64>,
 }
 
 pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
@@ -72,6 +75,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
             seconds: plan.predicted.seconds,
             estimate_seconds: plan.predicted.estimate_seconds,
             memory_mb: plan.predicted.memory_mb,
+            steps: plan.predicted.steps.map(|time| time.steps.round()),
         },
     };
     say!("{}", serde_json::to_string(&json).map_err(|e| Failure::failed(e.to_string()))?);

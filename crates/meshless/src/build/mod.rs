@@ -3,6 +3,7 @@
 mod checks;
 mod conditions;
 mod fields;
+mod line;
 mod mesh;
 mod points;
 mod shapes;
@@ -16,6 +17,7 @@ pub(crate) use conditions::{Boundary, missing_condition};
 pub(crate) use fields::{
     exact, field, jump_rates, jumps, materials, nodal_diffusivity, nodal_source, nodal_vorticity,
 };
+pub(crate) use line::{Line, LineData, lines};
 pub(crate) use mesh::{free_mesh, mesh_cells, particles};
 pub(crate) use points::{Placed, place};
 pub(crate) use shapes::{domain, regions, with_spacing_times};

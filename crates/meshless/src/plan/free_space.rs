@@ -63,6 +63,7 @@ pub(super) fn plan(scene: &Scene, survey: Survey) -> Result<Plan, Error> {
             unknowns: points,
             seconds: 1e-6 * MICROSECONDS * points,
             estimate_seconds: 0.0,
+            steps: None,
             memory_mb: 10.0 + 1e-6 * BYTES[scene.dimension - 1] * points,
         },
     })

@@ -11,6 +11,7 @@ mod free_space;
 mod method;
 mod predict;
 mod show;
+mod steps;
 
 use meshless_sparse::SolverParams;
 
@@ -21,6 +22,7 @@ pub use accuracy::AccuracyPlan;
 pub use effects::Effect;
 pub use method::{FreeSpaceParams, MethodParams, Transforms};
 pub use predict::Predicted;
+pub use steps::PredictedSteps;
 
 /// What will be done, in order.
 #[derive(Debug, Clone, PartialEq)]

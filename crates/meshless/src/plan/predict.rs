@@ -1,7 +1,10 @@
 //! What a plan is expected to take.
 
+use meshless_sparse::SolverKind;
+
 use super::effects::Survey;
-use super::{MethodParams, MethodPlan};
+use super::steps::{self, PredictedSteps};
+use super::{MethodParams, MethodPlan, choose};
 use crate::Error;
 use crate::build;
 use crate::scene::Scene;
@@ -17,6 +20,8 @@ pub struct Predicted {
     pub estimate_seconds: f64,
     /// Memory in units of 1e6 bytes.
     pub memory_mb: f64,
+    /// Steps in time, in scenes that have them.
+    pub steps: Option<PredictedSteps>,
 }
 
 /// Microseconds a node, by dimension, for the parts of a solve.
@@ -40,6 +45,17 @@ const RATES: [Rates; 3] = [
 /// Exponent by which the time of a solve exceeds its unknowns.
 const SOLVE_GROWTH: f64 = 0.3;
 
+/// What every solve with a matrix of the steps in time takes over a steady solve: such systems are better conditioned, and factors
+/// are kept.
+const SOLVE_SHARE: f64 = 0.12;
+
+/// The same of a matrix: of factors, and of preconditioners.
+const FACTORS_SHARE: f64 = 0.5;
+const PRECONDITIONER_SHARE: f64 = 0.15;
+
+/// Kilobytes a node that factors take, by dimension; twice as many where the steps change them.
+const FACTORS_KILOBYTES: [f64; 3] = [0.5, 6.0, 12.0];
+
 /// Memory of the program itself, in units of 1e6 bytes.
 const BASE_MEMORY_MB: f64 = 10.0;
 
@@ -52,18 +68,31 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
         false => 0.0,
     };
     let solve = rates.solve * (unknowns / 1e4).max(1.0).powf(SOLVE_GROWTH);
-    let nodes = rates.points + rates.neighbors + steps.cells * rates.cell;
-    let own = nodes + stencils(&method.params) + solve;
+    let made = steps.cells * rates.cell + stencils(&method.params);
+    let in_time = steps::predict(scene, unknowns)?;
+    let factors = choose::solver(scene, survey, method.name, unknowns).kind == SolverKind::Direct;
+    let matrix_share = if factors { FACTORS_SHARE } else { PRECONDITIONER_SHARE };
+    let solves = in_time.map_or(solve, |time| {
+        let once = rates.solve * (unknowns / 1e4).powf(SOLVE_GROWTH);
+        once * (matrix_share * time.matrices + SOLVE_SHARE * time.solves) + time.changes * made
+    });
+    let own = rates.points + rates.neighbors + made + solves;
     // The method at a higher order on the same nodes, or half as many nodes in every direction.
     let finer = method.params.finer(scene.dimension).filter(|_| scene.time.is_none());
     let estimate = match &finer {
         Some(finer) => stencils(finer) + solve,
         None => own * 0.5_f64.powi(scene.dimension as i32),
     };
+    // Fields that are kept, and factors.
+    let kept = scene.time.as_ref().map_or(0, |time| time.output.len());
+    let renewed = if in_time.is_some() { 2.0 } else { 1.0 };
+    let factored = if factors { renewed * FACTORS_KILOBYTES[scene.dimension - 1] } else { 0.0 };
+    let kilobytes = rates.kilobytes + factored + 8e-3 * kept as f64;
     Ok(Predicted {
         unknowns,
         seconds: 1e-6 * (own + estimate) * unknowns,
         estimate_seconds: 1e-6 * estimate * unknowns,
-        memory_mb: BASE_MEMORY_MB + rates.kilobytes * unknowns / 1e3,
+        memory_mb: BASE_MEMORY_MB + kilobytes * unknowns / 1e3,
+        steps: in_time,
     })
 }

@@ -116,8 +116,9 @@ impl fmt::Display for Plan {
         let p = &self.predicted;
         write!(
             f,
-            "predicted   {:.0} unknowns, {:.2} s on one core{}, {:.0} MB",
+            "predicted   {:.0} unknowns, {}{:.2} s on one core{}, {:.0} MB",
             p.unknowns,
+            p.steps.map_or_else(String::new, |time| format!("about {:.0} steps in time, ", time.steps)),
             p.seconds,
             self.estimate_name().map_or_else(String::new, |name| {
                 format!(" ({:.2} s of it the error estimate, {name})", p.estimate_seconds)

@@ -1,6 +1,7 @@
 //! Suite `hard`: what breaks methods that look good on the published cases.
 
 mod problems;
+mod unsteady;
 
 use problems::{Rings, rings};
 
@@ -16,10 +17,10 @@ use super::variant::Variant;
 const SUITE: &str = "hard";
 
 pub(super) const ABOUT: &str = "Contrasts from 1e-10 to 1e12, clouds of several seeds, a gap as thin as the spacing, nodes on the interface, nested \
-    floating rings, a re-entrant corner; by the conservative hybrid, and by what the plan chooses.";
+    floating rings, a re-entrant corner, heat in two materials; by the conservative hybrid, and by what the plan chooses.";
 
-pub(super) const CASES: [&str; 6] =
-    ["contrast", "seeds", "thin-gap", "on-interface", "nested-rings", "l-shape"];
+pub(super) const CASES: [&str; 7] =
+    ["contrast", "seeds", "thin-gap", "on-interface", "nested-rings", "l-shape", unsteady::CASE];
 
 /// The method whose order and insensitivity are claimed.
 const HYBRID: Variant = Variant { support: None, ..Variant::plain("gfdm-hybrid") };
@@ -144,6 +145,10 @@ pub(super) fn run(options: &Options) -> Study {
     for family in FAMILIES.iter().filter(|f| options.wants(f.case, HYBRID.method)) {
         family.check(&runner, &mut claims);
         sections.push(family.section(&runner));
+    }
+    unsteady::run(&mut runner, &mut claims);
+    if options.wants_case(unsteady::CASE) {
+        sections.push(unsteady::section(&runner));
     }
     runner.failures.iter().for_each(|f| eprintln!("run failed: {f}"));
     claims.at_most("all", "runs that ended with an error", Some(runner.failures.len() as f64), 0.0);
