@@ -64,15 +64,19 @@ fn a_table_has_every_node_with_its_numbers_bit_by_bit() {
 }
 
 #[test]
-fn an_unsteady_table_is_that_of_the_end_and_without_the_key_there_is_none() {
+fn an_unsteady_scene_has_a_table_for_each_time_and_without_the_key_there_is_none() {
     let scene = table_of(QUENCH, "3");
     let (plan, solution) = solve(&scene);
     let folder = tempfile::tempdir().expect("a folder");
     let files = write_outputs(&plan, &solution, folder.path(), "quench").expect("files");
-    assert_eq!(files.len(), 1);
-    let (head, rows) = read(&files[0]);
-    let u = head.iter().position(|name| name == "u").expect("u");
-    assert!(rows.iter().map(|row| row[u]).eq(solution.field.u.iter().copied()));
+    let names = ["quench.csv", "quench-1.csv", "quench-2.csv"];
+    assert!(files.iter().eq(names.map(|name| folder.path().join(name)).iter()), "{files:?}");
+    let fields = [&solution.field.u, &solution.frames[0].u, &solution.frames[1].u];
+    for (file, field) in files.iter().zip(fields) {
+        let (head, rows) = read(file);
+        let u = head.iter().position(|name| name == "u").expect("u");
+        assert!(rows.iter().map(|row| row[u]).eq(field.iter().copied()));
+    }
     let mut without = scene;
     without.output.csv = false;
     let plan = Plan::new(&without).expect("a plan");

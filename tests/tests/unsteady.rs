@@ -154,6 +154,26 @@ fn data_that_change_are_exact_for_every_method() {
     assert!(errors.iter().all(|(_, error)| *error < 1e-9), "{errors:?}");
 }
 
+/// An insulated square that is heated for a short while only: u is what was put in, all over the square. Steps that have become long in the
+/// calm before it pass over it, and no stage of theirs sees it.
+#[test]
+fn what_happens_for_a_short_while_is_not_missed() {
+    let box_ = "[domain]\nbox = { min = [0.0, 0.0], max = [1.0, 1.0] }\n\n[points]\nspacing = 0.2\n\n";
+    let pulse = "if(abs(t - 0.503) < 0.002, 50, 0)";
+    let bell = "exp(-((t - 0.7)/0.01)^2)/0.01/sqrt(pi)";
+    for (source, flux, heat) in [(pulse, "0", 0.2), (bell, "0", 1.0), ("0", bell, 1.0), (pulse, bell, 1.2)] {
+        for initial in [0.0, 3.0] {
+            let text = format!(
+                "title = \"pulse\"\ndimension = 2\n{box_}[[regions]]\nname = \"square\"\ndiffusivity = 1\nsource = \"{source}\"\n\
+                 exact = {}\n\n[[boundaries]]\nface = \"left\"\nflux = \"{flux}\"\n\n[[boundaries]]\nface = \"all\"\nflux = 0\n\n\
+                 [time]\nend = 2\ntolerance = 1e-3\ninitial = {initial}\n[method]\nname = \"gfdm-conservative\"\n",
+                initial + heat
+            );
+            assert!(l2(&solved(&text)) < 3e-3, "{source}, {flux}, {initial}: {:e}", l2(&solved(&text)));
+        }
+    }
+}
+
 /// A disc in a square whose second part has this diffusivity.
 fn disc(spacing: f64, contrast: f64, tolerance: f64) -> String {
     composite(2, spacing, contrast, tolerance)

@@ -32,6 +32,7 @@ pub fn write_outputs(
         let path = folder.join(format!("{stem}.csv"));
         write_text_atomically(&path, &nodes(&solution.field).text())?;
         files.push(path);
+        files.extend(tables(solution, folder, stem)?);
         if let Some(particles) = &solution.particles {
             let path = folder.join(format!("{stem}-particles.csv"));
             write_text_atomically(&path, &carried(particles).text())?;
@@ -41,6 +42,24 @@ pub fn write_outputs(
     if let Some(picture) = &solution.picture {
         let path = folder.join(format!("{stem}.svg"));
         write_text_atomically(&path, &picture.svg)?;
+        files.push(path);
+    }
+    Ok(files)
+}
+
+/// The fields before the end as `stem-1.csv` and so on.
+fn tables(solution: &Solution, folder: &Path, stem: &str) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for (k, frame) in (1..).zip(&solution.frames) {
+        let field = &solution.field;
+        let table = Lines {
+            points: &field.points,
+            dimension: field.dimension,
+            scalars: vec![("u", &frame.u)],
+            vectors: Vec::new(),
+        };
+        let path = folder.join(format!("{stem}-{k}.csv"));
+        write_text_atomically(&path, &table.text())?;
         files.push(path);
     }
     Ok(files)

@@ -103,6 +103,11 @@ impl Scene {
         Varying { matrix, data: data || matrix }
     }
 
+    /// The expressions that depend on `t`, but for exact solutions.
+    pub(crate) fn changing_data(&self) -> Vec<&ExprField> {
+        self.data().into_iter().flatten().filter(|f| f.varies_in_time(self.dimension)).collect()
+    }
+
     /// What is other than in the same scene at another time; both at one time each.
     pub(crate) fn differs_from(&self, other: &Self) -> Varying {
         let [matrix, data] = [0, 1].map(|k| {

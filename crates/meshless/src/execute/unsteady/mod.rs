@@ -1,12 +1,13 @@
 //! Scenes that change with time: the same rows in space, stepped by TR-BDF2.
 
 mod checkpoint;
+mod pulses;
 mod system;
 
 use std::time::Instant;
 
 use meshless_interfaces::{MethodError, SystemSolution};
-use meshless_time::{Params, StepError, Stepper};
+use meshless_time::{Params, State, StepError, Stepper};
 
 use super::{Discrete, Progress, Solved};
 use crate::plan::{Plan, Stage};
@@ -15,6 +16,7 @@ use crate::scene::{ExprField, Scene, TimeSpec};
 use crate::{Error, build};
 pub use checkpoint::Checkpoint;
 use checkpoint::Kept;
+use pulses::Pulses;
 use system::Heat;
 
 /// The field at a time before the end.
@@ -44,10 +46,11 @@ pub(super) fn solve_in<const D: usize>(
     let mut seconds = Seconds::default();
     let discrete = Discrete::<D>::build(&scene.at_time(0.0), plan, progress, &mut seconds)?;
     let heat = Heat::new(scene, plan, discrete, progress)?;
+    let pulses = Pulses::new(scene, &heat.discrete().cloud);
     progress.stage(Stage::TimeSteps);
     let kept = checkpoint.map(|c| c.read(scene, plan, heat.unknowns())).transpose()?.flatten();
     let (stepper, frames) = started(time, heat, kept)?;
-    let mut run = Run { scene, time, plan, checkpoint, stepper, frames, saved: Instant::now() };
+    let mut run = Run { scene, time, plan, checkpoint, stepper, pulses, frames, saved: Instant::now() };
     for &target in time.output.iter().chain([&time.end]) {
         run.advance_to(target, progress)?;
     }
@@ -61,6 +64,8 @@ struct Run<'a, const D: usize> {
     plan: &'a Plan,
     checkpoint: Option<&'a Checkpoint>,
     stepper: Stepper<Heat<'a, D>>,
+    /// What steps must not pass over.
+    pulses: Pulses,
     frames: Vec<Frame>,
     /// When the checkpoint was written last.
     saved: Instant,
@@ -88,12 +93,12 @@ impl<const D: usize> Run<'_, D> {
             return Ok(());
         }
         while self.stepper.state().t < target {
-            let t = self.stepper.state().t;
+            let State { t, step, .. } = *self.stepper.state();
             if !progress.proceed(t, self.time.end) {
                 self.save()?;
                 return Err(Error::Stopped { t });
             }
-            let taken = self.stepper.step(target);
+            let taken = self.stepper.step(self.pulses.reach(t, step, target));
             taken.map_err(|error| explain(error, Some(self.stepper.system())))?;
             if self.checkpoint.is_some_and(|c| self.saved.elapsed() >= c.every) {
                 self.save()?;
