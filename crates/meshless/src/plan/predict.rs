@@ -2,7 +2,7 @@
 
 use meshless_sparse::SolverKind;
 
-use super::effects::Survey;
+use super::effects::{Effect, Survey};
 use super::steps::{self, PredictedSteps};
 use super::{MethodParams, MethodPlan, choose};
 use crate::Error;
@@ -56,6 +56,9 @@ const PRECONDITIONER_SHARE: f64 = 0.15;
 /// Kilobytes a node that factors take, by dimension; twice as many where the steps change them.
 const FACTORS_KILOBYTES: [f64; 3] = [0.5, 6.0, 12.0];
 
+/// Pieces of a surface that fluxes go through, a node of it.
+const FLUX_PIECES: [f64; 3] = [1.0, 12.0, 16.0];
+
 /// Memory of the program itself, in units of 1e6 bytes.
 const BASE_MEMORY_MB: f64 = 10.0;
 
@@ -63,8 +66,9 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
     let unknowns = build::estimated_nodes(scene)?;
     let rates = &RATES[scene.dimension - 1];
     let steps = method.params.steps(survey);
+    let varies = survey.has(|effect| matches!(effect, Effect::VariableDiffusivity));
     let stencils = |params: &MethodParams| match steps.stencils {
-        true => params.stencil_microseconds(scene.dimension).unwrap_or(rates.stencil),
+        true => params.stencil_microseconds(scene.dimension, varies).unwrap_or(rates.stencil),
         false => 0.0,
     };
     let solve = rates.solve * (unknowns / 1e4).max(1.0).powf(SOLVE_GROWTH);
@@ -77,6 +81,11 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
         once * (matrix_share * time.matrices + SOLVE_SHARE * time.solves) + time.changes * made
     });
     let own = rates.points + rates.neighbors + made + solves;
+    let fluxes = if scene.output.fluxes {
+        flux_fits(unknowns, scene.dimension) / unknowns * stencils(&method.params)
+    } else {
+        0.0
+    };
     // The method at a higher order on the same nodes, or half as many nodes in every direction.
     let finer = method.params.finer(scene.dimension).filter(|_| scene.time.is_none());
     let estimate = match &finer {
@@ -90,9 +99,18 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
     let kilobytes = rates.kilobytes + factored + 8e-3 * kept as f64;
     Ok(Predicted {
         unknowns,
-        seconds: 1e-6 * (own + estimate) * unknowns,
+        seconds: 1e-6 * (own + fluxes + estimate) * unknowns,
         estimate_seconds: 1e-6 * estimate * unknowns,
         memory_mb: BASE_MEMORY_MB + kilobytes * unknowns / 1e3,
         steps: in_time,
     })
+}
+
+/// Fits that fluxes take: one a piece of the faces and of interfaces of about their extent, or, where these are more than nodes, one a
+/// node beside them.
+fn flux_fits(nodes: f64, dimension: usize) -> f64 {
+    let d = dimension as f64;
+    let beside = 4.0 * d * nodes.powf(1.0 - 1.0 / d);
+    let pieces = beside * FLUX_PIECES[dimension - 1];
+    if pieces > nodes { beside.min(nodes) } else { pieces }
 }

@@ -132,10 +132,11 @@ impl MethodParams {
         }
     }
 
-    /// What a stencil takes on one core, where the method knows better than a common figure.
-    pub(super) fn stencil_microseconds(&self, dimension: usize) -> Option<f64> {
+    /// What a stencil takes on one core, where the method knows better than a common figure; whether the diffusivity varies
+    /// within a region.
+    pub(super) fn stencil_microseconds(&self, dimension: usize, varies: bool) -> Option<f64> {
         match self {
-            Self::Sharp(params) => Some(sharp::stencil_microseconds(params, dimension)),
+            Self::Sharp(params) => Some(sharp::stencil_microseconds(params, dimension, varies)),
             _ => None,
         }
     }
