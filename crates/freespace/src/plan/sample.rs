@@ -21,7 +21,8 @@ impl Samples {
             smooth.and_then(|smooth| Pieces::new(kernel, smooth, self.farthest(), self.evaluations()));
         let kernel: &dyn Radial = pieces.as_ref().map_or(kernel, |pieces| pieces);
         if let Some(spacing) = self.repeats() {
-            let (table, across) = (self.table(kernel, spacing), self.across());
+            let across = self.across(done.is_symmetric());
+            let table = self.table(kernel, spacing, &across);
             return done.of(Known { table: &table, across: &across });
         }
         if self.is_square() {
@@ -39,9 +40,10 @@ impl Samples {
         x == y && y == z && self.repeats().is_some()
     }
 
-    /// Squares of the distances of columns from the first direction in units of the spacing, of a symmetric array those with `y <= z`.
-    fn across(self) -> Vec<usize> {
-        let first = |y: usize| if self.is_symmetric() { y } else { 0 };
+    /// Squares of the distances of columns from the first direction in units of the spacing, of an array that is kept as a symmetric one those
+    /// with `y <= z`: that the offsets are symmetric is not enough for that, what is kept of them must be.
+    fn across(self, symmetric: bool) -> Vec<usize> {
+        let first = |y: usize| if symmetric { y } else { 0 };
         (0..self.shape[1]).flat_map(|y| (first(y)..self.shape[2]).map(move |z| y * y + z * z)).collect()
     }
 
@@ -103,9 +105,8 @@ impl Samples {
     }
 
     /// Values by the square of the distance in units of the spacing, of those that there are.
-    fn table(self, kernel: &dyn Radial, spacing: f64) -> Vec<f64> {
+    fn table(self, kernel: &dyn Radial, spacing: f64, across: &[usize]) -> Vec<f64> {
         let mut occurs = vec![false; self.squares() + 1];
-        let across = self.across();
         (0..self.shape[0]).for_each(|i| across.iter().for_each(|here| occurs[i * i + here] = true));
         let of = |(square, &used): (usize, &bool)| {
             if used { kernel.value(spacing * (square as f64).sqrt()) } else { 0.0 }

@@ -73,6 +73,11 @@ impl Separable {
         lines * z.to
     }
 
+    /// Whether there are columns only for `y <= z`.
+    pub(super) fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
     /// Columns that are made together.
     pub(super) fn width(&self) -> usize {
         self.directions[0].width()
