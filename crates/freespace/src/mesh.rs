@@ -166,7 +166,12 @@ impl<const D: usize> Mesh<D> {
     /// The mesh with `cells` more on every side.
     pub(crate) fn grown(&self, cells: usize) -> Result<Self, FreeSpaceError> {
         let min = std::array::from_fn(|a| self.min[a] - cells as f64 * self.spacing[a]);
-        Self::new(min, self.spacing, self.cells().map(|n| n + 2 * cells), self.centring)
+        Self::new(
+            min,
+            self.spacing,
+            self.cells().map(|n| n.saturating_add(cells.saturating_mul(2))),
+            self.centring,
+        )
     }
 
     /// Where the points of this mesh lie in another one, in units of its spacing from its first point.

@@ -151,6 +151,15 @@ fn trees_that_cannot_be_are_refused() {
 }
 
 /// Bad input is an error that says which, never a panic and never a loop.
+/// The spectrum of the samples of a disc is that of a smooth source in phi; how much charge is at its rim samples do not know.
+#[test]
+fn a_source_that_ends_abruptly_is_not_resolved() {
+    let base = Mesh::of_box([-1.0; 2], [1.0; 2], [64; 2], Centring::Cell).expect("a mesh");
+    let disc = |p: [f64; 2]| f64::from(u8::from(p[0].hypot(p[1]) < 0.4));
+    let tree = suggest_tree(&base, disc, TreeParams { tolerance: 1e-4, ..TreeParams::default() });
+    assert!(matches!(tree, Err(FreeSpaceError::Tolerance { error, .. }) if error > 1e-4), "{tree:?}");
+}
+
 #[test]
 fn trees_of_bad_input_are_refused() {
     let base = Mesh::of_box([-1.0; 2], [1.0; 2], [64; 2], Centring::Cell).expect("a mesh");

@@ -34,7 +34,11 @@ impl Screened {
 
     /// What of an unscreened kernel is left out of [`Self::transform`], a constant wherever it is not cut off.
     pub(crate) fn rim(open: usize, radius: f64) -> Result<f64, FreeSpaceError> {
-        if open == 2 { Truncated::<2>::new(radius).map(|t| t.rim()) } else { Ok(0.0) }
+        match open {
+            1 => Truncated::<1>::new(radius).map(|t| t.rim()),
+            2 => Truncated::<2>::new(radius).map(|t| t.rim()),
+            _ => Ok(0.0),
+        }
     }
 
     /// Value at the wave number `k` of the open directions.
@@ -45,7 +49,7 @@ impl Screened {
         }
         if kappa == 0.0 {
             return match self.open {
-                1 => Truncated::<1>::new(l).map(|t| t.transform(k)),
+                1 => Truncated::<1>::new(l).map(|t| t.transform_above_rim(k)),
                 2 => Truncated::<2>::new(l).map(|t| t.transform_above_rim(k)),
                 _ => Truncated::<3>::new(l).map(|t| t.transform(k)),
             };
@@ -104,7 +108,9 @@ mod tests {
         let (l, k, kappa) = (1.5, 2.0, 1e-4);
         let weak = Screened::new(1, l, kappa).transform(k).expect("a value");
         let constant = (k * l).sin() / k / kappa;
-        let plain = Screened::new(1, l, 0.0).transform(k).expect("a value");
+        let (plain, rim) =
+            (Screened::new(1, l, 0.0).transform(k).expect("a value"), Screened::rim(1, l).expect("one"));
+        let plain = plain + rim * 2.0 * (k * l).sin() / k;
         assert!((weak - constant - plain).abs() < 1e-3, "{weak} {constant} {plain}");
     }
 }

@@ -44,26 +44,32 @@ impl<const D: usize> Truncated<D> {
         }
     }
 
-    /// The singular Green's function in the plane where it is cut off, elsewhere nothing. Without it the rest begins there with zero, and
-    /// its transform is only J0 and falls faster.
+    /// The singular Green's function of a line and of the plane where it is cut off, in space nothing. Without it the rest begins there with
+    /// zero, and its transform falls faster: like `k^-2` on a line, and is only J0 in the plane.
     pub(crate) fn rim(&self) -> f64 {
-        if D == 2 { -self.radius.ln() / (2.0 * PI) } else { 0.0 }
+        match D {
+            1 => -0.5 * self.radius,
+            2 => -self.radius.ln() / (2.0 * PI),
+            _ => 0.0,
+        }
     }
 
     /// The transform of the singular Green's function less [`Self::rim`], times the indicator of the ball.
     pub(crate) fn transform_above_rim(&self, k: f64) -> f64 {
-        if D != 2 {
-            return self.transform(k);
+        let (x, square) = (self.radius * k, self.radius * self.radius);
+        match D {
+            1 if x < 1e-10 => 0.5 * square,
+            1 => 2.0 * ((0.5 * x).sin() / k).powi(2),
+            2 if x < 1e-10 => 0.25 * square,
+            2 => one_minus_j0(x) / (x * x) * square,
+            _ => self.transform(k),
         }
-        let x = self.radius * k;
-        let ratio = if x < 1e-10 { 0.25 } else { one_minus_j0(x) / (x * x) };
-        self.radius * self.radius * ratio
     }
 
     /// The same for squares of wave numbers in units of `unit` squared, in place.
     pub(crate) fn transforms_above_rim(&self, unit: f64, squares: &mut [f64]) {
         if D != 2 {
-            return squares.iter_mut().for_each(|s| *s = self.transform(unit * s.sqrt()));
+            return squares.iter_mut().for_each(|s| *s = self.transform_above_rim(unit * s.sqrt()));
         }
         let (scale, square) = (self.radius * unit, self.radius * self.radius);
         one_minus_j0_ratios(scale, squares);

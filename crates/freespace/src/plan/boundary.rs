@@ -78,7 +78,8 @@ impl Continuation {
             _ => (fast_length(4 * n), Some(2 * n)),
         };
         let mut images = Vec::new();
-        for i in 0..n {
+        let mirrored = if low.is_none() && high.is_none() { 0 } else { n };
+        for i in 0..mirrored {
             let below = (2 * len - i - gap) % len;
             let above = (span - i) - gap;
             if let Some(sign) = low {

@@ -15,6 +15,9 @@ use crate::mesh::Mesh;
 /// Smoothing radii that the density of any order ends within, to round-off.
 const DENSITY_REACH: f64 = 13.0;
 
+/// Points of a mirrored direction whose images are some hundred megabytes.
+const MANY: usize = 1 << 22;
+
 /// The direction of the engine that a direction of the mesh is: planes of two-dimensional meshes are lines.
 pub(super) fn slot<const D: usize>(axis: usize) -> usize {
     if D == 2 && axis == 1 { 2 } else { axis }
@@ -48,7 +51,14 @@ impl Layout {
     pub(super) fn with_boundaries<const D: usize>(
         mesh: &Mesh<D>,
         boundaries: [Boundary; D],
+        memory_mb: Option<u64>,
     ) -> Result<Self, FreeSpaceError> {
+        // Lists of images take memory before anything else does.
+        let mirrored = (0..D).filter(|a| !matches!(boundaries[*a], Boundary::OPEN | Boundary::Periodic));
+        if mirrored.map(|a| mesh.points()[a]).any(|n| n > MANY) {
+            let trivial = Self::of(mesh, |_| Continuation::trivial());
+            memory::check::<f32>(trivial.points, trivial.points, &[], memory_mb)?;
+        }
         for axis in 0..D {
             if boundaries[axis] != Boundary::OPEN && mesh.points()[axis] < 2 {
                 return Err(FreeSpaceError::Kernel {
@@ -99,9 +109,8 @@ impl Layout {
     /// Lengths of transforms into which the box fits together with `beyond`.
     fn wide(&self, beyond: f64) -> [usize; 3] {
         std::array::from_fn(|a| match self.lines[a].open_span {
-            Some(span) => {
-                fast_even_length(span + (beyond / self.spacing[a]).ceil() as usize).max(self.lines[a].len)
-            }
+            Some(span) => fast_even_length(span.saturating_add((beyond / self.spacing[a]).ceil() as usize))
+                .max(self.lines[a].len),
             None => self.lines[a].len,
         })
     }

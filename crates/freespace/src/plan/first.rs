@@ -56,10 +56,11 @@ impl<'a, T: Real> First<'a, T> {
     pub(super) fn new(engine: &'a Engine<T>) -> Self {
         let (x, lanes) = (&engine.axes[0], engine.machine.lanes());
         let width = 2 * lanes;
+        let pairs = if engine.is_flat() { 1 } else { PAIRS.min(engine.axes[1].n.div_ceil(2)) };
         Self {
             engine,
             reals: Aligned::zeros(x.n * width),
-            values: Aligned::zeros((x.len * width + GAP) * PAIRS),
+            values: Aligned::zeros((x.len * width + GAP) * pairs),
             rows: Aligned::zeros(if engine.is_flat() { 2 * (x.half() + 1) * width } else { 0 }),
             missing: Aligned::zeros(x.n * lanes),
         }
@@ -139,7 +140,7 @@ impl<'a, T: Real> First<'a, T> {
     /// What is missing in a pack is zero: lines share transforms, in which the larger one leaves its round-off in the other.
     fn pairs_forward(&mut self, lines: &[T], pairs: Range<usize>, spectrum: Spectrum<&mut [T]>) -> bool {
         let (machine, x, pitch) = (&self.engine.machine, &self.engine.axes[0], self.pitch());
-        let (lanes, count) = (machine.lanes(), pairs.len());
+        let (lanes, count, last) = (machine.lanes(), pairs.len(), pairs.end - 1);
         let mut all = std::mem::take(&mut self.values);
         for (pair, values) in pairs.zip(all.chunks_exact_mut(pitch)) {
             for part in 0..2 {
@@ -152,11 +153,27 @@ impl<'a, T: Real> First<'a, T> {
             x.forward(machine, &self.reals, &mut values[..pitch - GAP]);
         }
         let (values, places) = (&all[..count * pitch], x.lines.opposite());
-        machine.run(Untangle { values, pitch, places, spectrum });
+        let Spectrum { rows, row, at } = spectrum;
+        machine.run(Untangle { values, pitch, places, spectrum: Spectrum { rows: &mut *rows, row, at } });
+        self.clear_missing(lines, last, Spectrum { rows, row, at: at + 4 * lanes * (count - 1) });
         let mut sums = values.chunks_exact(pitch).flat_map(|values| &values[..2 * lanes]);
         let finite = sums.all(|sum| sum.widened().is_finite());
         self.values = all;
         finite
+    }
+
+    /// Zeros in the spectra of lines that there are not beside some that there are, which have left their round-off there: that of the source
+    /// would come back in the field, which is smaller by the square of the spacing.
+    fn clear_missing(&self, lines: &[T], pair: usize, spectrum: Spectrum<&mut [T]>) {
+        let lanes = self.engine.machine.lanes();
+        let [even, odd] = [0, 1].map(|part| self.lines(lines, pair, part).take(lanes).count());
+        if odd < even {
+            let Spectrum { rows, row, at } = spectrum;
+            for row in rows.chunks_exact_mut(row) {
+                let pack = &mut row[at + 2 * lanes..][..2 * lanes];
+                pack.chunks_exact_mut(lanes).for_each(|part| part[odd..].fill(T::zero()));
+            }
+        }
     }
 
     fn pairs_inverse(

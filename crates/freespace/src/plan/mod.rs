@@ -107,11 +107,12 @@ impl<const D: usize, T: Real> Plan<D, T> {
     /// transforms the Green's function.
     ///
     /// # Errors
-    /// A kernel that does not exist, or more memory than there is.
+    /// A kernel that does not exist, more memory than there is, or spacings beyond those of [`Real::spacings`].
     pub fn new(mesh: &Mesh<D>, params: impl Into<PlanParams<D>>) -> Result<Self, FreeSpaceError> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         let params = params.into();
-        let layout = Layout::with_boundaries(mesh, params.boundaries)?;
+        check_unit::<D, T>(mesh)?;
+        let layout = Layout::with_boundaries(mesh, params.boundaries, params.memory_mb)?;
         let engine = build::planned(mesh, &layout, params.kernel, params.memory_mb)?;
         let closed = layout.is_closed::<D>().then(|| {
             (
@@ -122,22 +123,22 @@ impl<const D: usize, T: Real> Plan<D, T> {
         Ok(Self { mesh: *mesh, engine, closed })
     }
 
-    /// Plans convolutions with any function of the distance, in free space.
+    /// Plans convolutions with any function of the distance, in free space. It must have a finite value at distance zero, too, which is what each
+    /// point of the source contributes to phi where it is, over the volume of a cell.
     ///
     /// # Errors
-    /// More memory than there is.
+    /// A kernel whose values are not all finite, or more memory than there is.
     pub fn with_radial(mesh: &Mesh<D>, kernel: &dyn Radial) -> Result<Self, FreeSpaceError> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
-        let layout = Layout::with_boundaries(mesh, [Boundary::OPEN; D])?;
-        memory::check::<T>(layout.points, layout.lengths(), &[], None)?;
-        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel, None), None), closed: None })
+        let layout = Layout::with_boundaries(mesh, [Boundary::OPEN; D], None)?;
+        Self::of_layout(mesh, &layout, kernel, None)
     }
 
     /// The same without padding, for a function that vanishes beyond some distance: results are right at the points that
     /// are farther than that from the edge of the mesh.
     ///
     /// # Errors
-    /// More memory than there is.
+    /// As for [`Self::with_radial`].
     pub fn with_compact(mesh: &Mesh<D>, kernel: &dyn Radial) -> Result<Self, FreeSpaceError> {
         const { assert!(D >= 1 && D <= 3, "meshes have one, two or three dimensions") };
         Self::compact(mesh, kernel, None)
@@ -149,9 +150,27 @@ impl<const D: usize, T: Real> Plan<D, T> {
         kernel: &dyn Radial,
         smooth: Option<Smooth>,
     ) -> Result<Self, FreeSpaceError> {
-        let layout = Layout::compact(mesh);
+        Self::of_layout(mesh, &Layout::compact(mesh), kernel, smooth)
+    }
+
+    fn of_layout(
+        mesh: &Mesh<D>,
+        layout: &Layout,
+        kernel: &dyn Radial,
+        smooth: Option<Smooth>,
+    ) -> Result<Self, FreeSpaceError> {
+        check_unit::<D, T>(mesh)?;
         memory::check::<T>(layout.points, layout.lengths(), &[], None)?;
-        Ok(Self { mesh: *mesh, engine: layout.engine(layout.radial(kernel, smooth), None), closed: None })
+        let octant = layout.radial(kernel, smooth);
+        if !octant.is_finite() {
+            let origin = kernel.value(0.0);
+            return Err(FreeSpaceError::Kernel {
+                what: format!(
+                    "values of the kernel at the offsets of the mesh are not finite (at distance zero {origin}); a singular kernel needs a value there"
+                ),
+            });
+        }
+        Ok(Self { mesh: *mesh, engine: layout.engine(octant, None), closed: None })
     }
 
     /// The mesh.
@@ -191,7 +210,8 @@ impl<const D: usize, T: Real> Plan<D, T> {
         self.solve_shifted(sources, wanted, [0.0; D], workspace, outputs)
     }
 
-    /// The same at points that lie `shift` spacings from those of the mesh, by a shift in Fourier space.
+    /// The same at points that lie `shift` spacings from those of the mesh, by a shift in Fourier space. What is farther beyond the box than a
+    /// spacing is padding and no field.
     ///
     /// # Errors
     /// As for [`Self::solve`].
@@ -272,6 +292,13 @@ impl<const D: usize, T: Real> Plan<D, T> {
         let mean = if largest > 0.0 && all > 0.0 { sum / all / largest } else { 0.0 };
         if mean.abs() > NO_MEAN.max(T::epsilon()) { Err(FreeSpaceError::Mean { mean }) } else { Ok(()) }
     }
+}
+
+/// Refuses spacings whose squares are beyond the numbers of a type.
+fn check_unit<const D: usize, T: Real>(mesh: &Mesh<D>) -> Result<(), FreeSpaceError> {
+    let wrong = mesh.spacing().into_iter().find(|h| !T::spacings().contains(h));
+    let expected = "between 1e-12 and 1e12 in single precision: take another unit of length";
+    wrong.map_or(Ok(()), |value| Err(FreeSpaceError::Invalid { what: "spacing", value, expected }))
 }
 
 /// Values that are checked together.

@@ -60,6 +60,11 @@ impl Octant {
         Self { values, half, symmetric, together: done.together() }
     }
 
+    /// Whether all samples of the kernel were finite: their sum is wave number zero.
+    pub(super) fn is_finite(&self) -> bool {
+        self.values.first().is_some_and(|sum| sum.is_finite())
+    }
+
     /// The line of two indices.
     fn line(&self, i: usize, j: usize) -> impl Iterator<Item = f64> {
         let (length, together) = (self.half[2], self.together);

@@ -1,5 +1,6 @@
 //! The numbers that fields are made of.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -16,6 +17,8 @@ pub trait Real: FftNum + Default + Vectors {
     /// Numbers of this type in the same memory, if they are those given.
     #[doc(hidden)]
     fn same(values: Vec<f64>) -> Result<Vec<Self>, Vec<f64>>;
+    /// Spacings that fields and kernels, which go with their square, are numbers for: of `f32` 1e-12 to 1e12.
+    fn spacings() -> RangeInclusive<f64>;
     /// Mean of a source that is the round-off of its sum.
     #[doc(hidden)]
     fn epsilon() -> f64;
@@ -49,6 +52,9 @@ impl Real for f64 {
     fn same(values: Vec<f64>) -> Result<Vec<Self>, Vec<f64>> {
         Ok(values)
     }
+    fn spacings() -> RangeInclusive<f64> {
+        0.0..=f64::INFINITY
+    }
     fn epsilon() -> f64 {
         1e-13
     }
@@ -64,6 +70,9 @@ impl Real for f32 {
     }
     fn same(values: Vec<f64>) -> Result<Vec<Self>, Vec<f64>> {
         Err(values)
+    }
+    fn spacings() -> RangeInclusive<f64> {
+        1e-12..=1e12
     }
     fn epsilon() -> f64 {
         1e-5

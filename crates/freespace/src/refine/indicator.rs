@@ -114,7 +114,8 @@ pub fn suggest_tree<const D: usize>(
     if edge > tolerance {
         return Err(FreeSpaceError::Edge { edge, tolerance });
     }
-    let unresolved = Spectrum::new(base, &values)?.error(Kernel::Spectral);
+    let unresolved =
+        Spectrum::new(base, &values)?.error(Kernel::Spectral).max(missed(base, &values, &source));
     if unresolved > tolerance {
         return Err(FreeSpaceError::Tolerance { tolerance, error: unresolved });
     }
@@ -144,6 +145,24 @@ pub fn suggest_tree<const D: usize>(
     Ok(tree)
 }
 
+/// Half of the difference of the totals of the source at the points and between them, or of its first moments, over the total of its size: what
+/// samples miss of a source that ends abruptly, which no spectrum of samples knows.
+fn missed<const D: usize>(mesh: &Mesh<D>, values: &[f64], source: &impl Fn([f64; D]) -> f64) -> f64 {
+    let (h, low, high) = (mesh.spacing(), mesh.min(), mesh.max());
+    let (mut size, mut sums) = (0.0, [0.0; 4]);
+    for (point, value) in values.iter().enumerate() {
+        let here = mesh.point(point);
+        let there: [f64; D] = std::array::from_fn(|a| here[a] + 0.5 * h[a]);
+        let other = source(there);
+        let place = |p: [f64; D], a: usize| (2.0 * p[a] - low[a] - high[a]) / (high[a] - low[a]);
+        size += value.abs();
+        sums[0] += value - other;
+        (0..D).for_each(|a| sums[a + 1] += value * place(here, a) - other * place(there, a));
+    }
+    let most = sums.into_iter().fold(0.0_f64, |m, sum| m.max(sum.abs()));
+    if size > 0.0 { 0.5 * most / size } else { 0.0 }
+}
+
 /// What the error on a mesh is, point by point: of phi, or the length of that of its gradient.
 fn estimate<const D: usize>(
     mesh: &Mesh<D>,
@@ -158,7 +177,7 @@ fn estimate<const D: usize>(
     let ratio = (smoothing / SHARPER).max(LEAST_RATIO);
     let order = params.refine.order;
     let kernel = BandPass::<D>::new(order, smoothing * coarsest / ratio, ratio)?;
-    let band = (kernel.reach(params.refine.tolerance) / finest).ceil() as usize + TAPER;
+    let band = ((kernel.reach(params.refine.tolerance) / finest).ceil() as usize).saturating_add(TAPER);
     let sampled = mesh.grown(band)?;
     let plan = Plan::compact(&sampled, &kernel, kernel.smooth())?;
     let error = magnitudes(&plan, &taper(&sampled, &sampled.sample(source))?, wanted)?;

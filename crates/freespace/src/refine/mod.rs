@@ -254,7 +254,7 @@ impl<const D: usize> Level<D> {
         let coarsest = mesh.spacing().into_iter().fold(0.0, f64::max);
         let kernel = BandPass::<D>::new(params.order, smoothing * coarsest, ratio as f64)?;
         let finest = mesh.spacing().into_iter().fold(f64::INFINITY, f64::min);
-        let band = (kernel.reach(params.tolerance) / finest).ceil() as usize + TAPER;
+        let band = ((kernel.reach(params.tolerance) / finest).ceil() as usize).saturating_add(TAPER);
         let sampled = evaluated.grown(band)?;
         let plan = Plan::compact(&sampled, &kernel, kernel.smooth())?;
         Ok(Self { plan, parent: None, mesh, evaluated, margin, band })
