@@ -186,3 +186,32 @@ fn a_layer_that_the_nodes_do_not_see_leaves_no_estimate() {
 fn a_tolerance_is_not_met_before_the_nodes_see_all_layers() {
     reaches(FILM, &[0.2, 0.05, 1e-4]);
 }
+
+/// u is 1e8 in a region that holds a source and conducts nothing, and about 2 around it: what leaks is small beside the one and all of the
+/// other. The estimate of a region by itself says so.
+#[test]
+fn a_region_in_which_u_is_small_has_an_estimate_of_its_own() {
+    let text = r#"
+        title = "A soft box"
+        dimension = 2
+        domain = { box = { min = [0, 0], max = [1, 1] } }
+        points = { spacing = 0.05, layout = "jittered" }
+        regions = [
+            { name = "soft", box = { min = [0.313, 0.35], max = [0.59, 0.623] }, diffusivity = 1e-10, source = 10 },
+            { name = "plate", diffusivity = 1 },
+        ]
+        boundaries = [{ face = "all", dirichlet = "1 + x" }]
+        probes = [{ at = [0.71, 0.5] }]
+    "#;
+    let report = solve(&Scene::parse(text, "soft.toml").expect("a scene")).expect("a solution").report;
+    let [soft, plate] = ["soft", "plate"].map(|name| report.estimate.regions[name]);
+    let whole = report.estimate.l2.expect("an estimate");
+    // Beside the box u is near 1.8: what a probe has more is error.
+    let off = (report.probes[0].value.expect("inside") - 1.8).abs() / 1.8;
+    assert!((0.5..=1.0).contains(&(soft / whole)), "{soft:e} {whole:e}");
+    assert!(whole < 0.05 && (off < 0.2 || plate > off.min(0.5)), "{whole:e} {plate:e} {off:e}");
+    let alone =
+        solve(&Scene::parse(&kraus::interior(1e4, kraus::SUPPORT * 0.15, 1), "a.toml").expect("a scene"));
+    let estimate = alone.expect("a solution").report.estimate;
+    assert!(estimate.regions.len() == 2 && estimate.regions.values().all(|e| e.is_finite()));
+}

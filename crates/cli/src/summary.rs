@@ -98,6 +98,10 @@ fn solution(report: &Report) {
     }
 }
 
+/// A region's own estimate is shown from here on, if it is so many times that of the whole.
+const SHOWN: f64 = 0.02;
+const MUCH: f64 = 10.0;
+
 /// True errors, the estimate, and the clouds that a tolerance has taken.
 fn errors(report: &Report) {
     if let Some(errors) = &report.errors {
@@ -114,7 +118,13 @@ fn errors(report: &Report) {
         }
     }
     match (report.estimate.l2, &report.estimate.why_not) {
-        (Some(l2), _) => say!("estimate    l2 {l2:.3e}"),
+        (Some(l2), _) => {
+            say!("estimate    l2 {l2:.3e}");
+            let worse = |(_, of_region): &(&String, &f64)| **of_region > SHOWN.max(MUCH * l2);
+            for (name, of_region) in report.estimate.regions.iter().filter(worse) {
+                say!("  {name:<10} l2 {of_region:.3e} of u in this region alone");
+            }
+        }
         (None, Some(why)) => say!("estimate    none: {why}"),
         (None, None) => {}
     }

@@ -18,6 +18,11 @@ impl ErrorNorms {
         self.exact_max = self.exact_max.max(exact.abs());
     }
 
+    /// `sqrt(sum v u^2)`
+    pub fn exact_size(&self) -> f64 {
+        self.exact_squared.sqrt()
+    }
+
     /// `sqrt(sum v e^2 / sum v u^2)`; absolute where the exact solution vanishes.
     pub fn l2(&self) -> f64 {
         if self.exact_squared > 0.0 {

@@ -178,6 +178,10 @@ pub struct RegionErrors {
 pub struct Estimate {
     /// Relative L2 norm; absent where the coarser cloud cannot be solved on.
     pub l2: Option<f64>,
+    /// The same over each region by itself, by name, where there are several: u may be much smaller in one than in another. A region in which u
+    /// is round-off has none.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions: BTreeMap<String, f64>,
     /// Why there is no estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,

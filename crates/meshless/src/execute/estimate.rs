@@ -10,6 +10,8 @@
 //!
 //! Where the nodes do not see a layer, or stiff regions touch in a point, no comparison of theirs does, and there is no estimate.
 
+use std::collections::BTreeMap;
+
 use meshless_interfaces::{Sampler, SystemParams, solve};
 use rayon::prelude::*;
 
@@ -19,6 +21,9 @@ use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::{ContactReport, Estimate, ThinLayerReport};
 use crate::scene::Scene;
 use crate::{Error, build};
+
+/// Part of the size of u over all that is round-off in a region.
+const ROUND_OFF: f64 = 1e-13;
 
 /// Spacing of the coarser cloud over that of the finer one.
 const RATIO: f64 = 2.0;
@@ -62,7 +67,7 @@ pub(crate) fn estimate<const D: usize>(
     unresolved: &Unresolved<'_>,
 ) -> Result<(Estimate, Option<Vec<f64>>), Error> {
     if let Some(why_not) = unresolved.why_not() {
-        return Ok((Estimate { l2: None, why_not: Some(why_not) }, None));
+        return Ok((Estimate { why_not: Some(why_not), ..Estimate::default() }, None));
     }
     let (estimate, differences) = match plan.finer() {
         Some(finer) => against_finer(scene, plan, &finer, solved)?,
@@ -70,9 +75,38 @@ pub(crate) fn estimate<const D: usize>(
     };
     if estimate.l2.is_some_and(|l2| !l2.is_finite()) {
         let why_not = "the squares of u are beyond double precision: take other units".to_owned();
-        return Ok((Estimate { l2: None, why_not: Some(why_not) }, differences));
+        return Ok((Estimate { why_not: Some(why_not), ..Estimate::default() }, differences));
     }
     Ok((estimate, differences))
+}
+
+/// Norms over all nodes and over those of each region.
+struct Norms {
+    whole: ErrorNorms,
+    regions: Vec<ErrorNorms>,
+}
+
+impl Norms {
+    fn of(scene: &Scene) -> Self {
+        Self { whole: ErrorNorms::default(), regions: vec![ErrorNorms::default(); scene.regions.len()] }
+    }
+
+    fn add(&mut self, label: u16, measure: f64, difference: f64, value: f64) {
+        self.whole.add(measure, difference, value);
+        self.regions[label as usize].add(measure, difference, value);
+    }
+
+    /// Differences are so many times the error.
+    fn estimate(&self, scene: &Scene, times: f64) -> Estimate {
+        let least = ROUND_OFF * self.whole.exact_size();
+        let named = scene.regions.iter().zip(&self.regions).filter(|(_, norms)| norms.exact_size() > least);
+        let regions = named.map(|(region, norms)| (region.name.clone(), norms.l2() / times));
+        Estimate {
+            l2: Some(self.whole.l2() / times),
+            regions: if scene.regions.len() > 1 { regions.collect() } else { BTreeMap::new() },
+            why_not: None,
+        }
+    }
 }
 
 fn against_finer<const D: usize>(
@@ -90,7 +124,7 @@ fn against_finer<const D: usize>(
         Err(error) => {
             let error = solved.discrete.explain(scene, error);
             let why_not = Some(format!("no solution of a higher order: {error}"));
-            return Ok((Estimate { l2: None, why_not }, None));
+            return Ok((Estimate { why_not, ..Estimate::default() }, None));
         }
     };
     let measures = solved.discrete.measures();
@@ -101,11 +135,13 @@ fn against_finer<const D: usize>(
         let shift = total / measures.iter().sum::<f64>();
         differences.iter_mut().for_each(|d| *d -= shift);
     }
-    let mut norms = ErrorNorms::default();
-    for ((&difference, &better), &measure) in differences.iter().zip(&better.u).zip(&measures) {
-        norms.add(measure, difference, better);
+    let mut norms = Norms::of(scene);
+    for (((&difference, &better), &measure), &label) in
+        differences.iter().zip(&better.u).zip(&measures).zip(&solved.discrete.labels)
+    {
+        norms.add(label, measure, difference, better);
     }
-    Ok((Estimate { l2: Some(norms.l2()), why_not: None }, Some(differences)))
+    Ok((norms.estimate(scene, 1.0), Some(differences)))
 }
 
 fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>) -> Result<Estimate, Error> {
@@ -117,10 +153,8 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
             // What an error says of the scene takes several lines.
             let said = error.to_string();
             let first = said.lines().next().unwrap_or_default();
-            return Ok(Estimate {
-                l2: None,
-                why_not: Some(format!("no solution at twice the spacing: {first}")),
-            });
+            let why_not = Some(format!("no solution at twice the spacing: {first}"));
+            return Ok(Estimate { why_not, ..Estimate::default() });
         }
     };
     let problem = fine.discrete.problem();
@@ -133,10 +167,11 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
         .par_iter()
         .map_init(|| sampler.scratch(), |scratch, x| sampler.at(x, scratch).map(|s| (s.value, s.region)))
         .collect();
-    let differences: Vec<(f64, f64, f64)> = (values.iter().zip(&measures).enumerate())
+    let differences: Vec<(f64, f64, f64, u16)> = (values.iter().zip(&measures).enumerate())
         .filter_map(|(i, (value, &measure))| {
             let (value, region) = (*value)?;
-            (region == coarse.discrete.labels[i]).then(|| (measure, coarse.system.u[i] - value, value))
+            (region == coarse.discrete.labels[i])
+                .then(|| (measure, coarse.system.u[i] - value, value, region))
         })
         .collect();
     // Where nothing fixes the constant of u, only what differs beside a constant is an error.
@@ -146,12 +181,12 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
     } else {
         0.0
     };
-    let mut norms = ErrorNorms::default();
-    differences
-        .iter()
-        .for_each(|&(measure, difference, value)| norms.add(measure, difference - shift, value));
+    let mut norms = Norms::of(scene);
+    differences.iter().for_each(|&(measure, difference, value, region)| {
+        norms.add(region, measure, difference - shift, value);
+    });
     // Points from a file can only be thinned as they are.
     let nodes = [fine, &coarse].map(|solved| solved.discrete.cloud.len() as f64);
     let ratio = if scene.points.file.is_some() { (nodes[0] / nodes[1]).powf(1.0 / D as f64) } else { RATIO };
-    Ok(Estimate { l2: Some(norms.l2() / (ratio.powi(plan.expected_order() as i32) - 1.0)), why_not: None })
+    Ok(norms.estimate(scene, ratio.powi(plan.expected_order() as i32) - 1.0))
 }

@@ -232,7 +232,7 @@ fn execute_in<const D: usize>(
     let (estimate, differences) = if plan.runs(Stage::Estimate) {
         estimate(whole, plan, &solved, &Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts })?
     } else {
-        (Estimate { l2: None, why_not: Some("not asked for".to_owned()) }, None)
+        (Estimate { why_not: Some("not asked for".to_owned()), ..Estimate::default() }, None)
     };
     seconds.estimate = before.elapsed().as_secs_f64();
     let before = Instant::now();

@@ -48,8 +48,8 @@ pub(super) fn report<const D: usize>(
         Kernel::Truncated => (0, "fft, truncated kernel".to_owned()),
     };
     let estimate = match doubt(source, chosen) {
-        Some(why) => Estimate { l2: None, why_not: Some(why) },
-        None => Estimate { l2: Some(chosen.error.max(ROUND_OFF)), why_not: None },
+        Some(why) => Estimate { why_not: Some(why), ..Estimate::default() },
+        None => Estimate { l2: Some(chosen.error.max(ROUND_OFF)), ..Estimate::default() },
     };
     Report {
         title: scene.title.clone(),
