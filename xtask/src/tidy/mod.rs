@@ -22,7 +22,6 @@ const CHECKS: &[Check] = &[
     ("every crate has a README and the lints of the workspace", documents::crates_are_complete),
     ("every document is linked", documents::documents_are_linked),
     ("every example is mentioned", documents::examples_are_mentioned),
-    ("files hold one idea", sources::lengths),
     ("nothing is left undone", sources::nothing_left_undone),
     ("every exception from a lint has its reason", sources::exceptions_have_reasons),
 ];

@@ -1,4 +1,4 @@
-//! Source files: their lengths, and what must not be left in them.
+//! Source files: how long they are, and what must not be left in them.
 
 use std::fs;
 use std::io;
@@ -6,9 +6,6 @@ use std::path::{Path, PathBuf};
 
 use super::shown;
 use crate::workspace;
-
-/// Lines past which a file surely holds two ideas.
-const MAX_LINES: usize = 400;
 
 /// What must not be left in code. Words in strings and comments do not count.
 const UNDONE: &[&str] = &["todo!", "unimplemented!", "dbg!", "#[ignore"];
@@ -28,15 +25,6 @@ fn sources(root: &Path) -> io::Result<Vec<(PathBuf, String)>> {
         }
     }
     Ok(found)
-}
-
-pub(super) fn lengths(root: &Path) -> io::Result<Vec<String>> {
-    let long = |(path, text): &(PathBuf, String)| {
-        let lines = text.lines().count();
-        (lines > MAX_LINES)
-            .then(|| format!("{} has {lines} lines, the limit is {MAX_LINES}", shown(root, path)))
-    };
-    Ok(sources(root)?.iter().filter_map(long).collect())
 }
 
 /// How long the files are.
