@@ -3,6 +3,8 @@ import math
 import pathlib
 import sys
 
+import ngsolve as ng
+
 import hp
 
 TABLE = pathlib.Path(__file__).with_name("natural.csv")
@@ -69,14 +71,69 @@ CASES = {
     ),
 }
 
+
+
+def l_domain(eta):
+    """Source 1 in an L whose sides are at 0."""
+    l = [(-1, -1), (0, -1), (0, 0), (1, 0), (1, 1), (-1, 1)]
+    probes = [("l", (-0.5, -0.5)), ("l", (-0.2, 0.2)), ("l", (-0.1, 0.1)), ("l", (0.5, 0.5))]
+    return hp.Problem("l-domain", [("l", hp.face(l), eta, 1)], probes, lambda p: "outer", {"outer": 0}, closed={"outer": -3})
+
+
+def die(eta):
+    """A die on a copper spreader that is cooled from below; mm, W/(mm K), degrees C."""
+    regions = [("copper", hp.box((0, 0), (20, 3)), 0.39, 0), ("die", hp.box((0, 3), (5, 3.5)), eta, 1)]
+    probes = [("die", (0.0, 3.5)), ("die", (4.5, 3.25)), ("copper", (0.0, 0.0)), ("copper", (20.0, 0.0)), ("copper", (8.0, 1.5))]
+    bottom = {"bottom": (0.005, 25)}
+    named = lambda p: "bottom" if p.y < 1e-9 else "free" if min(p.x, 20 - p.x) < 1e-9 or p.y > 3 + 1e-9 else None
+    return hp.Problem("die", regions, probes, named, convection=bottom, size=1.5, closed={"bottom": -2.5})
+
+
+# Conductivity of a square array of cylinders that conduct perfectly, by the fraction of area.
+ARRAY = {0.3: 1.860188306519, 0.7: 7.432709328738}
+
+
+def quarter(fraction):
+    """A quarter of the cell of an array of cylinders, 0 on the left and 0.5 on the right, by the contrast."""
+    def at(contrast):
+        fibre = hp.disc((0, 0), math.sqrt(fraction / math.pi)) * hp.box((0, 0), (0.5, 0.5))
+        regions = [("fibre", fibre, contrast, 0), ("matrix", hp.box((0, 0), (0.5, 0.5)), 1, 0)]
+        probes = [("matrix", (0.45, 0.4)), ("matrix", (0.48, 0.2)), ("matrix", (0.4, 0.45))]
+        named = lambda p: "left" if p.x < 1e-9 else "right" if p.x > 0.5 - 1e-9 else None
+        flux = ARRAY[fraction] / 2
+        return hp.Problem("quarter-cell", regions, probes, named, {"left": 0, "right": 0.5}, size=0.06, curved=True,
+                          levels=((0, 8, 0.25), (0, 10, 0.25)), closed={"left": -flux, "right": flux})
+    return at
+
+
+def tolerance(eta):
+    """A heated chip; u = x on the left and on the right, nothing passes the other sides."""
+    chip = ("chip", hp.box((-0.3, -0.3), (0.3, 0.3)), eta, SOURCE)
+    named = lambda p: "ends" if abs(p.x) > 1 - 1e-9 else None
+    return hp.Problem("tolerance", [chip, ("plate", PLATE, 1, 0)], PROBES, named, {"ends": ng.x}, closed={"ends": -3.6})
+
+
+CASES["l-domain"] = l_domain
+CASES["die"] = die
+CASES["tolerance"] = tolerance
+
 ETAS = {
+    "l-domain": [1],
+    "die": [0.15],
+    "tolerance": [10],
     "heated-box": [1e-10, 1e-4, 1e-2, 10, 1e4, 1e10],
     "touching-corner": [0.1, 10],
 }
 
 
 def main(names):
-    for name in names or CASES:
+    for name in names or [*CASES, "quarter-cell"]:
+        if name == "quarter-cell":
+            for fraction in ARRAY:
+                at = quarter(fraction)
+                table = list(hp.rows(at(10), 1e10, extrapolate=at))
+                hp.write(TABLE, [[row[0], f"{fraction:g}", *row[2:]] for row in table])
+            continue
         for eta in ETAS.get(name, [1e-4, 1e-2, 10, 1e4, 1e10]):
             at = CASES[name]
             table = list(hp.rows(at(eta), eta, extrapolate=at if eta > 1e5 else False))

@@ -37,7 +37,9 @@ pub(super) fn check(runner: &Runner<'_>, case: &Case, claims: &mut Claims) {
         // An answer without an estimate is honest, one without a known error proves nothing.
         let worst = worst.fold(0.0, f64::max);
         let key = Key { case: case.case, variant: AUTO, jump: parameter, level: 1, seed: 1 };
-        let known = find(&runner.outcomes, &key).map(|run| judge(case, run)).filter(|j| j.values.is_some());
+        let known = find(&runner.outcomes, &key)
+            .map(|run| judge(case, run))
+            .filter(|j| j.values.is_some() || j.flux.is_some());
         claims.at_most(
             case.case,
             format!("{parameter:e}: true error over the estimate, largest of all probes, fluxes, methods and clouds"),
@@ -50,19 +52,19 @@ pub(super) fn check(runner: &Runner<'_>, case: &Case, claims: &mut Claims) {
 fn accuracy(runner: &Runner<'_>, case: &Case, parameter: f64, bound: &Bound, claims: &mut Claims) {
     let variant = bound.order.map_or(AUTO, sharp);
     let key = Key { case: case.case, variant, jump: parameter, level: bound.level, seed: 1 };
-    let judged = find(&runner.outcomes, &key).map(|run| judge(case, run));
+    let run = find(&runner.outcomes, &key);
+    let judged = run.map(|run| judge(case, run));
     let method = bound.order.map_or_else(|| "the plan's choice".to_owned(), |order| format!("order {order}"));
     let what = format!("{parameter:e}, {method}, spacing {}", case.spacing(bound.level));
-    claims.at_most(
-        case.case,
-        format!("{what}: largest error of a probe, over u in its region"),
-        judged.and_then(|j| j.values).map(|v| v[1]),
-        bound.values,
-    );
-    claims.at_most(
-        case.case,
-        format!("{what}: largest error of a flux"),
-        judged.and_then(|j| j.flux),
-        bound.flux,
-    );
+    let closed = run.is_some_and(|run| run.report.errors.is_some());
+    let over =
+        if closed { "relative maximum error" } else { "largest error of a probe, over u in its region" };
+    if case.probes {
+        let values = judged.and_then(|j| j.values).map(|v| v[1]);
+        claims.at_most(case.case, format!("{what}: {over}"), values, bound.values);
+    }
+    if !case.conditions.is_empty() {
+        let flux = judged.and_then(|j| j.flux);
+        claims.at_most(case.case, format!("{what}: largest error of a flux"), flux, bound.flux);
+    }
 }

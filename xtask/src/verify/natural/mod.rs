@@ -59,7 +59,8 @@ pub(super) fn run(options: &Options) -> Study {
     runner.run_all(cases::CASES.iter().flat_map(|case| jobs(case, options.effort)).collect());
     true_errors(&mut runner);
     let mut sections = Vec::new();
-    for case in cases::CASES.iter().filter(|c| options.wants(c.case, AUTO.method)) {
+    let takes_part = |case: &&Case| !case.parameters(options.effort).is_empty();
+    for case in cases::CASES.iter().filter(takes_part).filter(|c| options.wants(c.case, AUTO.method)) {
         checks::check(&runner, case, &mut claims);
         sections.push(sections::section(&runner, case));
     }
@@ -86,8 +87,9 @@ fn jobs(case: &Case, effort: Effort) -> Vec<Job> {
         .map(|(p, l)| job(AUTO, p, l))
         .collect();
     if has_orders(effort) {
-        let compared = COMPARED.iter().flat_map(|&v| case.levels(effort).map(move |level| (v, level)));
-        jobs.extend(compared.map(|(v, level)| job(v, parameters[0], level)));
+        jobs.extend(parameters.first().iter().flat_map(|&&first| {
+            COMPARED.iter().flat_map(move |&v| case.levels(effort).map(move |level| job(v, first, level)))
+        }));
         for bound in case.bounds {
             if let Some(order) = bound.order {
                 let about = parameters.iter().filter(|&&p| bound.parameter.is_none_or(|only| only == p));
