@@ -53,7 +53,7 @@ CASES = {
         "touching-corner",
         [("a", hp.box((-0.4, -0.4), (0, 0)), 1, SOURCE), ("b", hp.box((0, 0), (0.4, 0.4)), 1, 0)],
         [("a", (-0.25, -0.15)), ("b", (0.25, 0.15)), ("plate", (0.6, 0.3)), ("plate", (-0.3, 0.25))],
-        levels=((18, 10, 0.125), (26, 12, 0.15)),
+        levels=((10, 10, 0.125), (13, 12, 0.125)),
     ),
     # A box on an insulated wall.
     "box-on-wall": heated(
