@@ -44,6 +44,7 @@
 //! ```
 
 mod adjacency;
+mod corners;
 pub mod dcpse;
 mod diagnosis;
 mod error;

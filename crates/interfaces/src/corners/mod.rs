@@ -1,0 +1,3 @@
+//! Corners.
+
+mod wedge;
