@@ -49,6 +49,14 @@ pub(super) struct Term<const D: usize> {
     pub(super) equation: f64,
 }
 
+/// One term of a functional that is wanted: what it does to the polynomial in z of a part of the stencil at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted<const D: usize> {
+    pub(super) part: usize,
+    pub(super) z: [f64; D],
+    pub(super) functional: Row<D>,
+}
+
 /// Memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct Fit<const D: usize> {
@@ -107,16 +115,45 @@ impl<const D: usize> Fit<D> {
     /// left of its reproduction.
     pub(super) fn functional(
         &mut self,
+        maker: &Maker<'_, D>,
         stencil: &Stencil<D>,
         axis: Option<usize>,
         out: &mut Combination,
     ) -> f64 {
+        let size = axis.map_or(1.0, |_| 1.0 / stencil.radius);
+        let at_center = match axis {
+            None => Row::of_value(size),
+            Some(axis) => Row::of_slope(axis).times(size),
+        };
+        self.functional_of(maker, &[Wanted { part: 0, z: [0.0; D], functional: at_center }], out) / size
+    }
+
+    /// The sum of functionals of polynomials of the stencil, at any points: an integral over a face, say. Returns what is left of
+    /// its reproduction.
+    pub(super) fn functional_of(
+        &mut self,
+        maker: &Maker<'_, D>,
+        wanted: &[Wanted<D>],
+        out: &mut Combination,
+    ) -> f64 {
         self.wanted.clear();
         self.wanted.resize(self.qr.columns(), 0.0);
-        let (column, size) = axis.map_or((0, 1.0), |axis| (1 + axis, 1.0 / stencil.radius));
-        self.wanted[column] = size;
-        let particular = self.parts.particular_at_center(0, axis);
-        self.combine(particular.map(|p| size * p), out) / size
+        let mut particular = [0.0; 2];
+        let mut jet = std::mem::take(&mut self.parts.jet);
+        for Wanted { part, z, functional } in wanted {
+            self.parts.evaluate(maker, *part, z, true, &mut jet);
+            let first = self.parts.first_column(*part);
+            for m in 0..jet.values.len() {
+                self.wanted[first + m] += functional.apply(&jet, m);
+            }
+            if let Some((column, entry)) = self.parts.open_source(*part, functional, &jet) {
+                self.wanted[first + column] += entry;
+            }
+            let added = self.parts.apply_to_particular(*part, functional);
+            particular.iter_mut().zip(added).for_each(|(sum, p)| *sum += p);
+        }
+        self.parts.jet = jet;
+        self.combine(particular, out)
     }
 
     /// Solves for all polynomials at once; false where the rows do not determine them all.

@@ -196,7 +196,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             let at = (center, own, heard);
             stencil.gather(at, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
             fit.factor(self, stencil);
-            let remainder = fit.functional(stencil, None, combination);
+            let remainder = fit.functional(self, stencil, None, combination);
             if remainder <= REPRODUCTION && accept(combination) {
                 return Some(attempt > 0);
             }

@@ -25,6 +25,15 @@ impl<const D: usize> Row<D> {
         Self { gradient: std::array::from_fn(|k| f64::from(k == axis)), ..Self::of_value(0.0) }
     }
 
+    /// The functional times a factor.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        Self {
+            value: factor * self.value,
+            gradient: self.gradient.map(|g| factor * g),
+            laplacian: factor * self.laplacian,
+        }
+    }
+
     pub(super) fn is_value(&self) -> bool {
         self.laplacian == 0.0 && self.gradient == [0.0; D]
     }
@@ -311,17 +320,6 @@ impl<const D: usize> Parts<D> {
                 let [source, unit] = [2, 1].map(|from_end| coefficients.len() - from_end * count);
                 [of_monomials(&coefficients[source..unit]), of_monomials(&coefficients[unit..])]
             }
-        }
-    }
-
-    /// Value or derivative in z along an axis of a particular part at the center of the stencil, likewise. That of a
-    /// diffusivity that varies has neither there.
-    pub(super) fn particular_at_center(&self, part: usize, axis: Option<usize>) -> [f64; 2] {
-        match &self.parts[part].equation {
-            Equation::Harmonic { source: Source::Fitted(coefficients), .. } => {
-                [coefficients[axis.map_or(0, |axis| 1 + axis)], 0.0]
-            }
-            _ => [0.0; 2],
         }
     }
 }
