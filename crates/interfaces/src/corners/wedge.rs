@@ -144,8 +144,8 @@ impl Harmonic {
 }
 
 impl Forced {
-    /// Whether it has a logarithm.
-    pub(crate) fn is_logarithmic(&self) -> bool {
+    #[cfg(test)]
+    fn is_logarithmic(&self) -> bool {
         !self.logarithm.is_empty()
     }
 

@@ -102,7 +102,7 @@ impl<const D: usize> Fit<D> {
         self.in_time = maker.rates.is_some();
         self.parts.prepare(maker, stencil);
         self.assemble(maker, stencil);
-        if stencil.parts.len() == 1 {
+        if stencil.parts.len() == 1 && stencil.vertex.is_none() {
             if self.qr.factor(RANK_TOLERANCE) {
                 return;
             }
@@ -153,7 +153,20 @@ impl<const D: usize> Fit<D> {
             particular.iter_mut().zip(added).for_each(|(sum, p)| *sum += p);
         }
         self.parts.jet = jet;
-        self.combine(particular, out)
+        let left_over = self.combine(particular, out);
+        for Wanted { part, functional, .. } in wanted {
+            let share = self.share(maker, *part, functional.value);
+            if share.factor != 0.0 {
+                out.add(share);
+            }
+        }
+        left_over
+    }
+
+    /// What constants of parts add to `factor` times the polynomial of one beside its columns.
+    fn share(&self, maker: &Maker<'_, D>, part: usize, factor: f64) -> Share {
+        let beside = self.parts.constants_beside(maker, part);
+        beside.map_or_else(Share::default, |(of, less, each)| Share { of, less, factor: factor * each })
     }
 
     /// Solves for all polynomials at once; false where the rows do not determine them all.
@@ -215,7 +228,8 @@ impl<const D: usize> Fit<D> {
     }
 
     fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
-        let boundary: usize = stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum();
+        let at_vertex = stencil.vertex.is_some();
+        let boundary: usize = if at_vertex { 0 } else { stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum() };
         let at_nodes = stencil.part_of.iter().filter(|&&part| self.parts.has_rows(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
             2 + sides.iter().filter(|&&part| self.parts.has_rows(part)).count()
@@ -283,6 +297,7 @@ impl<const D: usize> Fit<D> {
             false => 1.0,
         };
         self.given.resize(nodes, Given::default());
+        let vertex = stencil.vertex.map(|vertex| maker.vertices.get(vertex));
         let mut jet = std::mem::take(&mut self.parts.jet);
         for (row, (&j, &part)) in stencil.nodes.iter().zip(&stencil.part_of).enumerate() {
             let j = j as usize;
@@ -290,10 +305,16 @@ impl<const D: usize> Fit<D> {
             let slopes = !maker.boundary_rows[j].is_empty();
             self.parts.evaluate(maker, part, &z, slopes, &mut jet);
             let weight = louder(j) * (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
+            let told = vertex.is_none_or(|vertex| vertex.is_told_by(&points[j]));
+            let weight = if told { weight } else { 0.0 };
             self.weights.push(weight);
-            let mut given = Given::default();
+            let mut given = Given { share: self.share(maker, part, -weight), ..Given::default() };
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
+            if vertex.is_some() {
+                // Its functions meet all conditions.
+                continue;
+            }
             let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
