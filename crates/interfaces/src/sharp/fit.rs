@@ -66,7 +66,7 @@ pub(super) struct Fit<const D: usize> {
     pub(super) terms: Vec<Term<D>>,
     in_time: bool,
     given: Vec<Given>,
-    /// Weights of the values, one a node.
+    /// Factors of the values in their rows, one a node: the weight of the row, and the units of the part.
     pub(super) weights: Vec<f64>,
     wanted: Vec<f64>,
     z: Vec<f64>,
@@ -143,6 +143,8 @@ impl<const D: usize> Fit<D> {
         for Wanted { part, z, functional } in wanted {
             self.parts.evaluate(maker, *part, z, true, &mut jet);
             let first = self.parts.first_column(*part);
+            // Of w; the polynomial is that of `w' = omega w`.
+            let functional = &functional.times(1.0 / self.parts.omega(*part));
             for m in 0..jet.values.len() {
                 self.wanted[first + m] += functional.apply(&jet, m);
             }
@@ -290,11 +292,11 @@ impl<const D: usize> Fit<D> {
             let slopes = !maker.boundary_rows[j].is_empty();
             self.parts.evaluate(maker, part, &z, slopes, &mut jet);
             let weight = louder(j) * (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
-            self.weights.push(weight);
+            self.weights.push(weight * self.parts.omega(part));
             let mut given = Given::default();
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
-            let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
+            let (eta, scale) = (maker.problem.eta[j], self.parts.scale(part));
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
                 self.equation(maker, part, (&z, &jet), &maker.slope(j), radius, eta * scale, source);
@@ -347,7 +349,7 @@ impl<const D: usize> Fit<D> {
             let at = &maker.interfaces.places[index as usize];
             let point = &maker.interfaces.points[index as usize];
             let z: [f64; D] = std::array::from_fn(|k| (at[k] - center[k]) / radius);
-            let scales = places.map(|place| maker.unknowns.scale[stencil.parts[place] as usize]);
+            let scales = places.map(|place| self.parts.scale(place));
             let conductance: [f64; 2] = std::array::from_fn(|s| point.sides[s].eta * scales[s]);
             let largest = conductance[0].max(conductance[1]);
             // As w are compared: both sides may be stiff.
