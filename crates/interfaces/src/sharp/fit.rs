@@ -66,9 +66,11 @@ pub(super) struct Fit<const D: usize> {
     pub(super) terms: Vec<Term<D>>,
     in_time: bool,
     given: Vec<Given>,
-    /// Weights of the values, one a node.
+    /// Factors of the values in their rows, one a node: the weight of the row, and the units of the part.
     pub(super) weights: Vec<f64>,
     wanted: Vec<f64>,
+    /// What the columns were multiplied by; empty where they were not.
+    column_units: Vec<f64>,
     z: Vec<f64>,
     /// Factors of the rows in the functional that was asked for last.
     pub(super) factors: Vec<f64>,
@@ -102,6 +104,10 @@ impl<const D: usize> Fit<D> {
         self.in_time = maker.rates.is_some();
         self.parts.prepare(maker, stencil);
         self.assemble(maker, stencil);
+        self.column_units.clear();
+        if stencil.vertex.is_some() {
+            self.equilibrate();
+        }
         if stencil.parts.len() == 1 && stencil.vertex.is_none() {
             if self.qr.factor(RANK_TOLERANCE) {
                 return;
@@ -109,6 +115,17 @@ impl<const D: usize> Fit<D> {
             self.assemble(maker, stencil);
         }
         self.qr.factor_pivoted(RANK_TOLERANCE);
+    }
+
+    /// Makes all columns as long as 1: functions that live in a soft sector alone are as good as others.
+    fn equilibrate(&mut self) {
+        for column in 0..self.qr.columns() {
+            let entries = self.qr.column_mut(column);
+            let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let unit = if length > 0.0 { 1.0 / length } else { 1.0 };
+            entries.iter_mut().for_each(|x| *x *= unit);
+            self.column_units.push(unit);
+        }
     }
 
     /// The derivative along an axis of the own polynomial at the node, or with `None` its value there. Returns what is
@@ -143,6 +160,8 @@ impl<const D: usize> Fit<D> {
         for Wanted { part, z, functional } in wanted {
             self.parts.evaluate(maker, *part, z, true, &mut jet);
             let first = self.parts.first_column(*part);
+            // Of w; the polynomial is that of `w' = omega w`.
+            let functional = &functional.times(1.0 / self.parts.omega(*part));
             for m in 0..jet.values.len() {
                 self.wanted[first + m] += functional.apply(&jet, m);
             }
@@ -153,6 +172,7 @@ impl<const D: usize> Fit<D> {
             particular.iter_mut().zip(added).for_each(|(sum, p)| *sum += p);
         }
         self.parts.jet = jet;
+        self.wanted.iter_mut().zip(&self.column_units).for_each(|(entry, unit)| *entry *= unit);
         let left_over = self.combine(particular, out);
         for Wanted { part, functional, .. } in wanted {
             let share = self.share(maker, *part, functional.value);
@@ -306,8 +326,9 @@ impl<const D: usize> Fit<D> {
             self.parts.evaluate(maker, part, &z, slopes, &mut jet);
             let weight = louder(j) * (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
             let told = vertex.is_none_or(|vertex| vertex.is_told_by(&points[j]));
-            let weight = if told { weight } else { 0.0 };
-            self.weights.push(weight);
+            // The functions of a vertex are in the units of the nodes: those of softer parts are weighed instead.
+            let weight = if told { weight * self.parts.loudness(part) } else { 0.0 };
+            self.weights.push(weight * self.parts.omega(part));
             let mut given = Given { share: self.share(maker, part, -weight), ..Given::default() };
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
@@ -315,7 +336,7 @@ impl<const D: usize> Fit<D> {
                 // Its functions meet all conditions.
                 continue;
             }
-            let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
+            let (eta, scale) = (maker.problem.eta[j], self.parts.scale(part));
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
                 self.equation(maker, part, (&z, &jet), &maker.slope(j), radius, eta * scale, source);
@@ -368,7 +389,7 @@ impl<const D: usize> Fit<D> {
             let at = &maker.interfaces.places[index as usize];
             let point = &maker.interfaces.points[index as usize];
             let z: [f64; D] = std::array::from_fn(|k| (at[k] - center[k]) / radius);
-            let scales = places.map(|place| maker.unknowns.scale[stencil.parts[place] as usize]);
+            let scales = places.map(|place| self.parts.scale(place));
             let conductance: [f64; 2] = std::array::from_fn(|s| point.sides[s].eta * scales[s]);
             let largest = conductance[0].max(conductance[1]);
             // As w are compared: both sides may be stiff.

@@ -84,6 +84,12 @@ enum Equation {
 #[derive(Debug, Clone, Default)]
 struct Part {
     equation: Equation,
+    /// What the values of the part are multiplied by in this stencil, `w' = omega w`: less than 1 where it is softer than the own part.
+    omega: f64,
+    /// The scale of the unknown in its place, `s' = s / omega`.
+    scale: f64,
+    /// Weight of the values of the part where its unknown is left as it is.
+    loudness: f64,
     first_column: usize,
     /// One more column: a source that is constant, and not known.
     open: bool,
@@ -98,6 +104,25 @@ fn is_softer<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: 
         Some(maker.problem.eta[stencil.nodes[node] as usize])
     };
     place > 0 && eta(place).zip(eta(0)).is_some_and(|(other, own)| other < own)
+}
+
+/// `(eta s)` of a part over that of the center's, where it is less: the units in which a fit sees it.
+///
+/// Where a soft part holds a source, its values are of the size `f / eta`, and what a polynomial misses of them would be weighed against
+/// the values of the stiff part. A stiff part wants nothing of a soft one but its flux. So a target in a stiff part sees the values
+/// of softer ones in units of the flux, and one in a soft part sees those of stiffer ones as they are. In time, rows choose what they hear
+/// by themselves ([`Heard`](super::stencil::Heard)).
+fn omega<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: usize) -> f64 {
+    if place == 0 || maker.rates.is_some() {
+        return 1.0;
+    }
+    // The diffusivity may vary in a part: that at its node nearest to the center stands for it.
+    let level = |place: usize| {
+        let node = stencil.part_of.iter().position(|&p| p == place)?;
+        let scale = maker.unknowns.scale[stencil.parts[place] as usize];
+        Some(maker.problem.eta[stencil.nodes[node] as usize] * scale)
+    };
+    level(place).zip(level(0)).map_or(1.0, |(other, own)| (other / own).min(1.0))
 }
 
 fn evaluate_monomials<const D: usize>(basis: &Basis<D>, z: &[f64; D], slopes: bool, jet: &mut Jet<D>) {
@@ -155,7 +180,9 @@ impl<const D: usize> Parts<D> {
         for place in 0..stencil.parts.len() {
             let part = stencil.parts[place] as usize;
             let material = &maker.problem.materials[maker.unknowns.label[part] as usize];
-            let response = -stencil.radius * stencil.radius / maker.unknowns.scale[part];
+            let omega = omega(maker, stencil, place);
+            let scale = maker.unknowns.scale[part] / omega;
+            let response = -stencil.radius * stencil.radius / scale;
             // Where diffusivity or source are no numbers somewhere near, rows see them at nodes of their own region only.
             let solved = match (maker.params.form, material.diffusivity.as_constant()) {
                 (Form::General, _) => None,
@@ -168,13 +195,18 @@ impl<const D: usize> Parts<D> {
             let basis = if solved.is_some() { &maker.harmonic_basis } else { &maker.complete_basis };
             let open = maker.rates.is_some() && is_softer(maker, stencil, place);
             self.columns += basis.len() + usize::from(open);
-            self.parts[place] = Part { equation: solved.unwrap_or_default(), first_column, open };
+            self.parts[place] =
+                Part { equation: solved.unwrap_or_default(), omega, loudness: 1.0, scale, first_column, open };
         }
     }
 
     fn prepare_at_vertex(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>, vertex: usize) {
         let functions = maker.vertices.get(vertex);
-        self.parts.iter_mut().for_each(|part| *part = Part { equation: Equation::Vertex, ..Part::default() });
+        for place in 0..stencil.parts.len() {
+            let (loudness, scale) = (omega(maker, stencil, place), maker.unknowns.scale[stencil.parts[place] as usize]);
+            self.parts[place] =
+                Part { equation: Equation::Vertex, omega: 1.0, loudness, scale, ..Part::default() };
+        }
         self.columns = functions.columns();
         let points = maker.problem.cloud.points();
         let reach = stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(functions.distance(&points[j as usize])));
@@ -278,6 +310,21 @@ impl<const D: usize> Parts<D> {
 
     pub(super) fn first_column(&self, part: usize) -> usize {
         self.parts[part].first_column
+    }
+
+    /// What the values of the nodes of a part are multiplied by before they enter the fit.
+    pub(super) fn omega(&self, part: usize) -> f64 {
+        self.parts[part].omega
+    }
+
+    /// Weight of the values of the nodes of a part, beside that of their distance.
+    pub(super) fn loudness(&self, part: usize) -> f64 {
+        self.parts[part].loudness
+    }
+
+    /// The scale of what enters.
+    pub(super) fn scale(&self, part: usize) -> f64 {
+        self.parts[part].scale
     }
 
     /// Whether the equation of a part is in rows.

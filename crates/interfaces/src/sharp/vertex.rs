@@ -17,8 +17,8 @@ use crate::{Field, Problem};
 /// How far from a vertex fits take its functions: this many spacings for each degree of the polynomials that take over there.
 const ZONE: f64 = 2.0;
 
-/// Part of the clear distance round a vertex up to which fits take its functions, whether or not they see it: beyond, others may be
-/// nearer.
+/// Part of the clear distance round a vertex up to which fits may take its functions however wide a stencil is: beyond, most of its nodes
+/// are where other things are.
 const SHARE_OF_CLEAR: f64 = 0.5;
 
 /// Nodes within the clear distance for each function.
@@ -195,8 +195,9 @@ impl Vertex {
             .collect();
         let parts = parts.ok_or(Obstacle::Spacing)?;
         let spacing = nodes.nearest_one(&at).map_or(local.clear, |j| problem.cloud.spacing()[j as usize]);
-        let zone = (ZONE * params.degree() as f64 * spacing).min(SHARE_OF_CLEAR * local.clear);
         let stencil = (params.stencil_nodes(D) as f64 / std::f64::consts::PI).sqrt() * spacing;
+        let widest = (local.clear - stencil).max(SHARE_OF_CLEAR * local.clear);
+        let zone = (ZONE * params.degree() as f64 * spacing).min(widest);
         let radius = (zone + 2.0 * stencil).min(local.clear);
         let of_part = |of: &[f64]| parts.iter().map(|&part| of[part as usize]).collect::<Vec<f64>>();
         let (scale, offset) = (of_part(&unknowns.scale), of_part(&unknowns.offset));
