@@ -49,6 +49,14 @@ pub(super) struct Term<const D: usize> {
     pub(super) equation: f64,
 }
 
+/// One term of a functional that is wanted: what it does to the polynomial in z of a part of the stencil at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted<const D: usize> {
+    pub(super) part: usize,
+    pub(super) z: [f64; D],
+    pub(super) functional: Row<D>,
+}
+
 /// Memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct Fit<const D: usize> {
@@ -58,9 +66,11 @@ pub(super) struct Fit<const D: usize> {
     pub(super) terms: Vec<Term<D>>,
     in_time: bool,
     given: Vec<Given>,
-    /// Weights of the values, one a node.
+    /// Factors of the values in their rows, one a node: the weight of the row, and the units of the part.
     pub(super) weights: Vec<f64>,
     wanted: Vec<f64>,
+    /// What the columns were multiplied by; empty where they were not.
+    column_units: Vec<f64>,
     z: Vec<f64>,
     /// Factors of the rows in the functional that was asked for last.
     pub(super) factors: Vec<f64>,
@@ -94,7 +104,11 @@ impl<const D: usize> Fit<D> {
         self.in_time = maker.rates.is_some();
         self.parts.prepare(maker, stencil);
         self.assemble(maker, stencil);
-        if stencil.parts.len() == 1 {
+        self.column_units.clear();
+        if stencil.vertex.is_some() {
+            self.equilibrate();
+        }
+        if stencil.parts.len() == 1 && stencil.vertex.is_none() {
             if self.qr.factor(RANK_TOLERANCE) {
                 return;
             }
@@ -103,20 +117,76 @@ impl<const D: usize> Fit<D> {
         self.qr.factor_pivoted(RANK_TOLERANCE);
     }
 
+    /// Makes all columns as long as 1: functions that live in a soft sector alone are as good as others.
+    fn equilibrate(&mut self) {
+        for column in 0..self.qr.columns() {
+            let entries = self.qr.column_mut(column);
+            let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let unit = if length > 0.0 { 1.0 / length } else { 1.0 };
+            entries.iter_mut().for_each(|x| *x *= unit);
+            self.column_units.push(unit);
+        }
+    }
+
     /// The derivative along an axis of the own polynomial at the node, or with `None` its value there. Returns what is
     /// left of its reproduction.
     pub(super) fn functional(
         &mut self,
+        maker: &Maker<'_, D>,
         stencil: &Stencil<D>,
         axis: Option<usize>,
         out: &mut Combination,
     ) -> f64 {
+        let size = axis.map_or(1.0, |_| 1.0 / stencil.radius);
+        let at_center = match axis {
+            None => Row::of_value(size),
+            Some(axis) => Row::of_slope(axis).times(size),
+        };
+        self.functional_of(maker, &[Wanted { part: 0, z: [0.0; D], functional: at_center }], out) / size
+    }
+
+    /// The sum of functionals of polynomials of the stencil, at any points: an integral over a face, say. Returns what is left of
+    /// its reproduction.
+    pub(super) fn functional_of(
+        &mut self,
+        maker: &Maker<'_, D>,
+        wanted: &[Wanted<D>],
+        out: &mut Combination,
+    ) -> f64 {
         self.wanted.clear();
         self.wanted.resize(self.qr.columns(), 0.0);
-        let (column, size) = axis.map_or((0, 1.0), |axis| (1 + axis, 1.0 / stencil.radius));
-        self.wanted[column] = size;
-        let particular = self.parts.particular_at_center(0, axis);
-        self.combine(particular.map(|p| size * p), out) / size
+        let mut particular = [0.0; 2];
+        let mut jet = std::mem::take(&mut self.parts.jet);
+        for Wanted { part, z, functional } in wanted {
+            self.parts.evaluate(maker, *part, z, true, &mut jet);
+            let first = self.parts.first_column(*part);
+            // Of w; the polynomial is that of `w' = omega w`.
+            let functional = &functional.times(1.0 / self.parts.omega(*part));
+            for m in 0..jet.values.len() {
+                self.wanted[first + m] += functional.apply(&jet, m);
+            }
+            if let Some((column, entry)) = self.parts.open_source(*part, functional, &jet) {
+                self.wanted[first + column] += entry;
+            }
+            let added = self.parts.apply_to_particular(*part, functional);
+            particular.iter_mut().zip(added).for_each(|(sum, p)| *sum += p);
+        }
+        self.parts.jet = jet;
+        self.wanted.iter_mut().zip(&self.column_units).for_each(|(entry, unit)| *entry *= unit);
+        let left_over = self.combine(particular, out);
+        for Wanted { part, functional, .. } in wanted {
+            let share = self.share(maker, *part, functional.value);
+            if share.factor != 0.0 {
+                out.add(share);
+            }
+        }
+        left_over
+    }
+
+    /// What constants of parts add to `factor` times the polynomial of one beside its columns.
+    fn share(&self, maker: &Maker<'_, D>, part: usize, factor: f64) -> Share {
+        let beside = self.parts.constants_beside(maker, part);
+        beside.map_or_else(Share::default, |(of, less, each)| Share { of, less, factor: factor * each })
     }
 
     /// Solves for all polynomials at once; false where the rows do not determine them all.
@@ -178,7 +248,8 @@ impl<const D: usize> Fit<D> {
     }
 
     fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
-        let boundary: usize = stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum();
+        let at_vertex = stencil.vertex.is_some();
+        let boundary: usize = if at_vertex { 0 } else { stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum() };
         let at_nodes = stencil.part_of.iter().filter(|&&part| self.parts.has_rows(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
             2 + sides.iter().filter(|&&part| self.parts.has_rows(part)).count()
@@ -246,6 +317,7 @@ impl<const D: usize> Fit<D> {
             false => 1.0,
         };
         self.given.resize(nodes, Given::default());
+        let vertex = stencil.vertex.map(|vertex| maker.vertices.get(vertex));
         let mut jet = std::mem::take(&mut self.parts.jet);
         for (row, (&j, &part)) in stencil.nodes.iter().zip(&stencil.part_of).enumerate() {
             let j = j as usize;
@@ -253,11 +325,18 @@ impl<const D: usize> Fit<D> {
             let slopes = !maker.boundary_rows[j].is_empty();
             self.parts.evaluate(maker, part, &z, slopes, &mut jet);
             let weight = louder(j) * (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
-            self.weights.push(weight);
-            let mut given = Given::default();
+            let told = vertex.is_none_or(|vertex| vertex.is_told_by(&points[j]));
+            // The functions of a vertex are in the units of the nodes: those of softer parts are weighed instead.
+            let weight = if told { weight * self.parts.loudness(part) } else { 0.0 };
+            self.weights.push(weight * self.parts.omega(part));
+            let mut given = Given { share: self.share(maker, part, -weight), ..Given::default() };
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
-            let (eta, scale) = (maker.problem.eta[j], maker.unknowns.scale[stencil.parts[part] as usize]);
+            if vertex.is_some() {
+                // Its functions meet all conditions.
+                continue;
+            }
+            let (eta, scale) = (maker.problem.eta[j], self.parts.scale(part));
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
                 self.equation(maker, part, (&z, &jet), &maker.slope(j), radius, eta * scale, source);
@@ -310,7 +389,7 @@ impl<const D: usize> Fit<D> {
             let at = &maker.interfaces.places[index as usize];
             let point = &maker.interfaces.points[index as usize];
             let z: [f64; D] = std::array::from_fn(|k| (at[k] - center[k]) / radius);
-            let scales = places.map(|place| maker.unknowns.scale[stencil.parts[place] as usize]);
+            let scales = places.map(|place| self.parts.scale(place));
             let conductance: [f64; 2] = std::array::from_fn(|s| point.sides[s].eta * scales[s]);
             let largest = conductance[0].max(conductance[1]);
             // As w are compared: both sides may be stiff.

@@ -22,6 +22,7 @@ mod sample;
 mod stencil;
 mod thickness;
 mod unknowns;
+mod vertex;
 
 use std::time::Instant;
 

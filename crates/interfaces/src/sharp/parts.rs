@@ -6,6 +6,7 @@ use super::dense;
 use super::maker::Maker;
 use super::params::Form;
 use super::stencil::Stencil;
+use super::vertex::{self, Valued};
 use crate::{Field, Material};
 
 /// What a row does to a polynomial in z: factors of its value, its gradient and its Laplacian.
@@ -23,6 +24,15 @@ impl<const D: usize> Row<D> {
 
     pub(super) fn of_slope(axis: usize) -> Self {
         Self { gradient: std::array::from_fn(|k| f64::from(k == axis)), ..Self::of_value(0.0) }
+    }
+
+    /// The functional times a factor.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        Self {
+            value: factor * self.value,
+            gradient: self.gradient.map(|g| factor * g),
+            laplacian: factor * self.laplacian,
+        }
     }
 
     pub(super) fn is_value(&self) -> bool {
@@ -66,12 +76,20 @@ enum Equation {
     /// It varies: coefficients of what each harmonic polynomial lacks to solve the equation, of the particular part of the
     /// source, and of that of a source of 1.
     Adapted(Vec<f64>),
+    /// The functions of a vertex, which all parts have in common.
+    Vertex,
 }
 
 /// The polynomial of one part.
 #[derive(Debug, Clone, Default)]
 struct Part {
     equation: Equation,
+    /// What the values of the part are multiplied by in this stencil, `w' = omega w`: less than 1 where it is softer than the own part.
+    omega: f64,
+    /// The scale of the unknown in its place, `s' = s / omega`.
+    scale: f64,
+    /// Weight of the values of the part where its unknown is left as it is.
+    loudness: f64,
     first_column: usize,
     /// One more column: a source that is constant, and not known.
     open: bool,
@@ -88,6 +106,25 @@ fn is_softer<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: 
     place > 0 && eta(place).zip(eta(0)).is_some_and(|(other, own)| other < own)
 }
 
+/// `(eta s)` of a part over that of the center's, where it is less: the units in which a fit sees it.
+///
+/// Where a soft part holds a source, its values are of the size `f / eta`, and what a polynomial misses of them would be weighed against
+/// the values of the stiff part. A stiff part wants nothing of a soft one but its flux. So a target in a stiff part sees the values
+/// of softer ones in units of the flux, and one in a soft part sees those of stiffer ones as they are. In time, rows choose what they hear
+/// by themselves ([`Heard`](super::stencil::Heard)).
+fn omega<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: usize) -> f64 {
+    if place == 0 || maker.rates.is_some() {
+        return 1.0;
+    }
+    // The diffusivity may vary in a part: that at its node nearest to the center stands for it.
+    let level = |place: usize| {
+        let node = stencil.part_of.iter().position(|&p| p == place)?;
+        let scale = maker.unknowns.scale[stencil.parts[place] as usize];
+        Some(maker.problem.eta[stencil.nodes[node] as usize] * scale)
+    };
+    level(place).zip(level(0)).map_or(1.0, |(other, own)| (other / own).min(1.0))
+}
+
 fn evaluate_monomials<const D: usize>(basis: &Basis<D>, z: &[f64; D], slopes: bool, jet: &mut Jet<D>) {
     if slopes {
         basis.evaluate(z, jet);
@@ -96,9 +133,28 @@ fn evaluate_monomials<const D: usize>(basis: &Basis<D>, z: &[f64; D], slopes: bo
     }
 }
 
+/// How the functions of a vertex enter a stencil.
+#[derive(Debug, Clone)]
+struct AtVertex<const D: usize> {
+    /// Which one.
+    vertex: usize,
+    /// The parts of the stencil.
+    parts: Vec<u32>,
+    center: [f64; D],
+    radius: f64,
+    /// Distance of the farthest node from the vertex.
+    reach: f64,
+    /// The place of the part whose constant the others are told from, that of the smallest scale; `None` where u is prescribed at
+    /// the vertex.
+    reference: Option<usize>,
+    /// What the data add at the point that was evaluated last, and what a source of 1 does.
+    given: [Valued<D>; 2],
+}
+
 /// The polynomials of a stencil.
 #[derive(Debug, Default)]
 pub(super) struct Parts<const D: usize> {
+    at_vertex: Option<AtVertex<D>>,
     parts: Vec<Part>,
     columns: usize,
     pub(super) jet: Jet<D>,
@@ -117,10 +173,16 @@ impl<const D: usize> Parts<D> {
     pub(super) fn prepare(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         self.parts.resize_with(stencil.parts.len(), Part::default);
         self.columns = 0;
+        self.at_vertex = None;
+        if let Some(vertex) = stencil.vertex {
+            return self.prepare_at_vertex(maker, stencil, vertex);
+        }
         for place in 0..stencil.parts.len() {
             let part = stencil.parts[place] as usize;
             let material = &maker.problem.materials[maker.unknowns.label[part] as usize];
-            let response = -stencil.radius * stencil.radius / maker.unknowns.scale[part];
+            let omega = omega(maker, stencil, place);
+            let scale = maker.unknowns.scale[part] / omega;
+            let response = -stencil.radius * stencil.radius / scale;
             // Where diffusivity or source are no numbers somewhere near, rows see them at nodes of their own region only.
             let solved = match (maker.params.form, material.diffusivity.as_constant()) {
                 (Form::General, _) => None,
@@ -133,8 +195,40 @@ impl<const D: usize> Parts<D> {
             let basis = if solved.is_some() { &maker.harmonic_basis } else { &maker.complete_basis };
             let open = maker.rates.is_some() && is_softer(maker, stencil, place);
             self.columns += basis.len() + usize::from(open);
-            self.parts[place] = Part { equation: solved.unwrap_or_default(), first_column, open };
+            self.parts[place] =
+                Part { equation: solved.unwrap_or_default(), omega, loudness: 1.0, scale, first_column, open };
         }
+    }
+
+    fn prepare_at_vertex(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>, vertex: usize) {
+        let functions = maker.vertices.get(vertex);
+        for place in 0..stencil.parts.len() {
+            let (loudness, scale) = (omega(maker, stencil, place), maker.unknowns.scale[stencil.parts[place] as usize]);
+            self.parts[place] =
+                Part { equation: Equation::Vertex, omega: 1.0, loudness, scale, ..Part::default() };
+        }
+        self.columns = functions.columns();
+        let points = maker.problem.cloud.points();
+        let reach = stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(functions.distance(&points[j as usize])));
+        let scale = |place: usize| maker.unknowns.scale[stencil.parts[place] as usize];
+        let softest_first = (0..stencil.parts.len()).min_by(|&a, &b| scale(a).total_cmp(&scale(b)).then(a.cmp(&b)));
+        let reference = softest_first.filter(|_| !functions.is_held());
+        let given = [(0.0, [0.0; D]); 2];
+        let (center, radius, parts) = (stencil.center, stencil.radius, stencil.parts.clone());
+        self.at_vertex = Some(AtVertex { vertex, parts, center, radius, reach, reference, given });
+    }
+
+    /// What constants of parts add to the polynomial of one, which stand beside the functions of a vertex: the place of the part that is
+    /// added, that of the one that is taken away, the factor of their difference.
+    pub(super) fn constants_beside(
+        &self,
+        maker: &Maker<'_, D>,
+        part: usize,
+    ) -> Option<(usize, Option<usize>, f64)> {
+        let AtVertex { reference, parts, .. } = self.at_vertex.as_ref()?;
+        let scale = maker.unknowns.scale[parts[part] as usize];
+        // `c_reference + s_reference W = c + s w`, or the prescribed value in place of the left side.
+        (*reference != Some(part)).then_some((part, *reference, -1.0 / scale))
     }
 
     /// Writes a field at samples of the stencil's ball to `values`; `None` where it is not a number somewhere.
@@ -218,6 +312,21 @@ impl<const D: usize> Parts<D> {
         self.parts[part].first_column
     }
 
+    /// What the values of the nodes of a part are multiplied by before they enter the fit.
+    pub(super) fn omega(&self, part: usize) -> f64 {
+        self.parts[part].omega
+    }
+
+    /// Weight of the values of the nodes of a part, beside that of their distance.
+    pub(super) fn loudness(&self, part: usize) -> f64 {
+        self.parts[part].loudness
+    }
+
+    /// The scale of what enters.
+    pub(super) fn scale(&self, part: usize) -> f64 {
+        self.parts[part].scale
+    }
+
     /// Whether the equation of a part is in rows.
     pub(super) fn has_rows(&self, part: usize) -> bool {
         matches!(self.parts[part].equation, Equation::Rows)
@@ -261,6 +370,7 @@ impl<const D: usize> Parts<D> {
         self.z.clear();
         self.z.extend(z);
         match &self.parts[part].equation {
+            Equation::Vertex => self.evaluate_at_vertex(maker, part, z, jet),
             Equation::Rows => maker.complete_basis.evaluate(z, jet),
             Equation::Harmonic { source, .. } => {
                 maker.harmonic_basis.evaluate(z, jet);
@@ -287,6 +397,15 @@ impl<const D: usize> Parts<D> {
         }
     }
 
+    fn evaluate_at_vertex(&mut self, maker: &Maker<'_, D>, part: usize, z: &[f64; D], jet: &mut Jet<D>) {
+        let Some(at) = &mut self.at_vertex else { return };
+        let x = std::array::from_fn(|k| at.center[k] + at.radius * z[k]);
+        let scale = |place: usize| maker.unknowns.scale[at.parts[place] as usize];
+        let constant = at.reference.map_or(0.0, |reference| scale(reference) / scale(part));
+        at.given = maker.vertices.get(at.vertex).evaluate(at.parts[part], &x, (at.reach, constant), jet);
+        jet.gradients.iter_mut().flatten().for_each(|slope| *slope *= at.radius);
+    }
+
     /// A functional of the particular part at the point that was evaluated last: for the source, and for a source of 1.
     pub(super) fn apply_to_particular(&self, part: usize, functional: &Row<D>) -> [f64; 2] {
         let of_monomials = |coefficients: &[f64]| -> f64 {
@@ -297,6 +416,9 @@ impl<const D: usize> Parts<D> {
         };
         match &self.parts[part].equation {
             Equation::Rows => [0.0; 2],
+            Equation::Vertex => self.at_vertex.as_ref().map_or([0.0; 2], |at| {
+                at.given.each_ref().map(|given| vertex::apply(functional, given, at.radius))
+            }),
             Equation::Harmonic { source, unit } => {
                 let of_one = unit * self.of_square(functional);
                 let of_source = match source {
@@ -311,17 +433,6 @@ impl<const D: usize> Parts<D> {
                 let [source, unit] = [2, 1].map(|from_end| coefficients.len() - from_end * count);
                 [of_monomials(&coefficients[source..unit]), of_monomials(&coefficients[unit..])]
             }
-        }
-    }
-
-    /// Value or derivative in z along an axis of a particular part at the center of the stencil, likewise. That of a
-    /// diffusivity that varies has neither there.
-    pub(super) fn particular_at_center(&self, part: usize, axis: Option<usize>) -> [f64; 2] {
-        match &self.parts[part].equation {
-            Equation::Harmonic { source: Source::Fitted(coefficients), .. } => {
-                [coefficients[axis.map_or(0, |axis| 1 + axis)], 0.0]
-            }
-            _ => [0.0; 2],
         }
     }
 }

@@ -81,7 +81,7 @@ impl<const D: usize> Maker<'_, D> {
         let mut row = GradientRow { nodes: stencil.nodes.clone(), ..GradientRow::default() };
         row.factors.reserve_exact(D * row.nodes.len());
         for axis in 0..D {
-            fit.functional(stencil, Some(axis), combination);
+            fit.functional(self, stencil, Some(axis), combination);
             row.factors.extend(combination.values.iter().map(|h| scale * h));
             row.known.push(scale * combination.known);
             for share in &combination.constants {
@@ -114,7 +114,7 @@ impl<const D: usize> Maker<'_, D> {
         let constant = |place: usize| reference[place] - self.unknowns.offset[stencil.parts[place] as usize];
         let scale = |part: usize| self.unknowns.scale[stencil.parts[part] as usize];
         Ok(std::array::from_fn(|axis| {
-            fit.functional(stencil, Some(axis), combination);
+            fit.functional(self, stencil, Some(axis), combination);
             let nodes = stencil.nodes.iter().zip(&stencil.part_of).zip(&combination.values);
             let differences = nodes.map(|((&j, &p), h)| h * (u[j as usize] - reference[p]) / scale(p));
             let shares = combination.constants.iter();
@@ -178,6 +178,7 @@ impl<const D: usize> Maker<'_, D> {
         let Some((_, Owner { node, .. })) = members.first() else { return Vec::new() };
         let (part, center) = (self.unknowns.part[*node], self.problem.cloud.points()[*node]);
         let solved = self.factor_at((&center, part, Heard::All), scratch, |_| true).is_some()
+            && scratch.stencil.vertex.is_none()
             && scratch.fit.solve(
                 &scratch.stencil,
                 |j| values.w[j as usize],
@@ -201,7 +202,7 @@ impl<const D: usize> Maker<'_, D> {
     /// `s` times a functional of the own polynomial of the stencil that was factored last.
     fn evaluate(&self, axis: Option<usize>, values: &Values<'_>, scratch: &mut Scratch<D>) -> f64 {
         let Scratch { stencil, fit, combination, rates, mass, .. } = scratch;
-        fit.functional(stencil, axis, combination);
+        fit.functional(self, stencil, axis, combination);
         let mut known = combination.known;
         if let (Some(polynomials), false) = (&self.rates, values.rates.is_empty()) {
             polynomials.of_any(self, stencil, fit, rates, mass);
