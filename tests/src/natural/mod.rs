@@ -6,7 +6,6 @@
 pub mod corners;
 pub mod desk;
 pub mod plates;
-pub mod random;
 pub mod references;
 
 use std::fmt::Write as _;
