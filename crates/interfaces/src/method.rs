@@ -2,7 +2,7 @@
 
 use meshless_sparse::{DifferenceMatrix, Split};
 
-use crate::{GradientRow, MethodError, Problem, Sample, SystemSolution, gradient};
+use crate::{Corner, GradientRow, MethodError, Problem, Sample, SystemSolution, gradient};
 
 /// A meshless discretisation of an elliptic interface problem.
 pub trait Method<const D: usize>: Sync {
@@ -66,6 +66,9 @@ pub struct Discretization {
     /// The gradient at every node, where the method has kept it from what its rows are made of; see
     /// [`Discretization::gradient`].
     pub gradients: Option<Vec<GradientRow>>,
+    /// The vertices at which the solution is no polynomial, and which of them the method has functions for; `None` for a method that
+    /// does not look for them.
+    pub corners: Option<Vec<Corner>>,
 }
 
 impl Discretization {
@@ -77,7 +80,7 @@ impl Discretization {
         counts: Counts,
         stencil_seconds: f64,
     ) -> Self {
-        let (constants, mass, interface_points, gradients) = (None, None, Vec::new(), None);
+        let (constants, mass, interface_points, gradients, corners) = (None, None, Vec::new(), None, None);
         Self {
             rows,
             rhs,
@@ -89,6 +92,7 @@ impl Discretization {
             stencil_seconds,
             interface_points,
             gradients,
+            corners,
         }
     }
 

@@ -29,6 +29,10 @@ pub struct Report {
     /// Where stiff regions touch each other or a wall in a point; empty where none do.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<ContactReport>,
+    /// The vertices at which the solution has a power of the distance below the order that is no polynomial, and in space edges; empty
+    /// where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub corners: Vec<CornerReport>,
     /// Largest diffusivity of a node over the smallest.
     pub contrast: f64,
     /// What the scene calls for.
@@ -129,6 +133,20 @@ pub struct ContactReport {
     pub between: Vec<String>,
     /// Name of the region in the gap.
     pub gap: String,
+}
+
+/// A corner of an interface or of the boundary, or a place where conditions change, at which `u ~ r^exponent`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct CornerReport {
+    /// Where; a point of it, of an edge in space.
+    pub at: Vec<f64>,
+    /// The smallest power of the distance that the solution has there and polynomials have not; 0 where two prescribed values meet.
+    pub exponent: f64,
+    /// Whether the method has functions with that power there.
+    pub served: bool,
+    /// Why it has not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_not: Option<String>,
 }
 
 /// The time steps of an unsteady scene.

@@ -97,7 +97,12 @@ impl<const D: usize> Method<D> for Sharp {
             let gradients =
                 maker.keeps_gradients().then(|| gradients(maker, &known, &mut rows)).transpose()?;
             let seconds = start.elapsed().as_secs_f64();
-            Ok(Discretization { gradients, ..assemble(problem, maker.unknowns, &known, &rows, seconds)? })
+            let corners = (D == 2).then(|| maker.vertices.corners.clone());
+            Ok(Discretization {
+                gradients,
+                corners,
+                ..assemble(problem, maker.unknowns, &known, &rows, seconds)?
+            })
         })
     }
 

@@ -1,6 +1,7 @@
 //! From a plan to a solution, stage by stage; what the plan skips is not built.
 
 mod contacts;
+mod corners;
 mod discrete;
 mod estimate;
 mod fluxes;
@@ -229,6 +230,7 @@ fn execute_in<const D: usize>(
     let before = Instant::now();
     let thin_layer = thin_layer(scene, plan, &problem)?;
     let contacts = contacts(scene, &problem);
+    let corners = corners::found(plan, &problem, &solved.discretization);
     let (estimate, differences) = if plan.runs(Stage::Estimate) {
         estimate(whole, plan, &solved, &Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts })?
     } else {
@@ -243,7 +245,8 @@ fn execute_in<const D: usize>(
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    let report = Report { fallback, thin_layer, contacts, fluxes, ..report };
+    let corners = corners::report(&corners);
+    let report = Report { fallback, thin_layer, contacts, corners, fluxes, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames, particles: None })
 }

@@ -35,6 +35,7 @@ pub(super) fn report<const D: usize>(
         fallback: None,
         thin_layer: None,
         contacts: Vec::new(),
+        corners: Vec::new(),
         fluxes: None,
         contrast: problem.contrast(),
         effects: plan.effects.iter().map(|e| e.name().to_owned()).collect(),

@@ -85,6 +85,8 @@ pub enum Stage {
     ConstrainedStencils,
     /// Find the nodes whose rows must be conservative.
     NodeSelection,
+    /// Functions in place of polynomials near corners at which the solution is singular.
+    CornerFunctions,
     /// Voronoi cells of the conservative nodes, and balances over them.
     Cells,
     /// Put the rows together and eliminate prescribed values.

@@ -21,6 +21,7 @@ impl Stage {
             Self::DiffusionStencils => "diffusion stencils",
             Self::ConstrainedStencils => "constrained stencils",
             Self::NodeSelection => "node selection",
+            Self::CornerFunctions => "corner functions",
             Self::Cells => "Voronoi cells",
             Self::Assembly => "assembly",
             Self::FloatingConstants => "floating constants",
