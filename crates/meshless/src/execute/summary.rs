@@ -36,6 +36,7 @@ pub(super) fn report<const D: usize>(
         thin_layer: None,
         contacts: Vec::new(),
         fluxes: None,
+        balance: None,
         contrast: problem.contrast(),
         effects: plan.effects.iter().map(|e| e.name().to_owned()).collect(),
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),
