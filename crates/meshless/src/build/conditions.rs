@@ -51,7 +51,7 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// Which entry of the scene holds on a face at a point.
-    fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
+    pub(crate) fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
         self.entries.iter().position(|entry| {
             entry.face.is_none_or(|f| f == face)
                 && entry.place.as_ref().is_none_or(|place| holds(place.at(x)))
@@ -104,9 +104,9 @@ impl<const D: usize> Boundary<D> {
         Err(Error::TooCoarse(Box::new(spec.place.error(message, help))))
     }
 
-    /// The entry that holds on a face at a point, and what it says there.
-    pub(crate) fn entry_at(&self, face: FaceId, x: &[f64; D]) -> Option<(usize, Condition)> {
-        self.entry(face, x).map(|index| (index, self.entries[index].kind.at(x)))
+    /// What an entry of the scene says at a point.
+    pub(crate) fn of_entry(&self, index: usize, x: &[f64; D]) -> Condition {
+        self.entries[index].kind.at(x)
     }
 
     /// The conditions of every boundary node, one for each of its faces, checked.

@@ -2,6 +2,7 @@
 
 use meshless_interfaces::{Corner, CornerData, Discretization, Obstacle, Problem, corners};
 
+use super::honest::Reason;
 use crate::plan::Plan;
 use crate::report::CornerReport;
 
@@ -35,7 +36,7 @@ pub(super) fn report(corners: &[Corner]) -> Vec<CornerReport> {
 /// The relative error that the corners leave which the method does not serve, about: `(h / L)^(2 lambda)`, the rate of every method
 /// that fits polynomials there (Strang and Fix, "An analysis of the finite element method", 1973, chapter 8), with the spacing h at
 /// the corner and the distance L of the next one.
-pub(super) fn left<const D: usize>(problem: &Problem<'_, D>, corners: &[Corner]) -> Option<f64> {
+pub(super) fn reason<const D: usize>(problem: &Problem<'_, D>, corners: &[Corner]) -> Reason {
     let points = problem.cloud.points();
     let of_corner = |corner: &Corner| {
         let squared = |i: usize| (0..D).map(|k| (points[i][k] - corner.at[k]).powi(2)).sum::<f64>();
@@ -48,5 +49,6 @@ pub(super) fn left<const D: usize>(problem: &Problem<'_, D>, corners: &[Corner])
         let strength = if whole == 0.0 { 1.0 } else { (WEAK * whole).min(1.0) };
         Some(strength * ratio.powf(rate))
     };
-    corners.iter().filter(|corner| corner.obstacle.is_some()).filter_map(of_corner).reduce(f64::max)
+    let left = corners.iter().filter(|corner| corner.obstacle.is_some()).filter_map(of_corner);
+    Reason { by: "corners", whole: left.reduce(f64::max), regions: Vec::new() }
 }

@@ -37,6 +37,7 @@ pub(super) fn report<const D: usize>(
         contacts: Vec::new(),
         corners: Vec::new(),
         fluxes: None,
+        balance: None,
         contrast: problem.contrast(),
         effects: plan.effects.iter().map(|e| e.name().to_owned()).collect(),
         skipped: plan.skipped.iter().map(|s| s.what.to_owned()).collect(),

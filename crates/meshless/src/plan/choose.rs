@@ -251,6 +251,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     if scene.output.fluxes {
         decide(carries_fluxes(survey, method), Stage::Fluxes, "the method has no gradients up to interfaces");
     }
+    decide(true, Stage::Balance, "");
     decide(true, Stage::Estimate, "");
     decide(scene.accuracy.is_some(), Stage::Refinement, "no error to reach is given");
     decide(scene.output.vtu, Stage::Diagnosis, "no field output asks for it");

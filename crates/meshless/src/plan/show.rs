@@ -32,6 +32,7 @@ impl Stage {
             Self::Errors => "errors",
             Self::Probes => "probes",
             Self::Fluxes => "fluxes",
+            Self::Balance => "balance",
             Self::Estimate => "error estimate",
             Self::Diagnosis => "stencil diagnosis",
             Self::Refinement => "refinement",
