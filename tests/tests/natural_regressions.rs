@@ -50,3 +50,43 @@ fn jumps_of_the_flux_are_those_of_the_sides_at_acute_corners() {
         assert!(error < 1e-12, "seed {seed}: {error:e}");
     }
 }
+
+/// A bar with a source in its stiff middle: u = 0.3 + phi (1 + x/2)/eta.
+fn bar(contrast: f64, spacing: f64) -> String {
+    format!(
+        r#"
+dimension = 1
+[domain]
+box = {{ min = [-1.0], max = [1.0] }}
+[points]
+spacing = {spacing}
+[[regions]]
+name = "in"
+box = {{ min = [-0.3], max = [0.4] }}
+diffusivity = {contrast:e}
+source = "-1.9 - 3*x"
+exact = "0.3 + (x + 0.3)*(x - 0.4)*(1 + x/2)/{contrast:e}"
+[[regions]]
+name = "out"
+diffusivity = 1
+source = "-1.9 - 3*x"
+exact = "0.3 + (x + 0.3)*(x - 0.4)*(1 + x/2)"
+[[boundaries]]
+face = "all"
+dirichlet = "0.3 + (x + 0.3)*(x - 0.4)*(1 + x/2)"
+[method]
+name = "immersed-interface"
+"#
+    )
+}
+
+#[test]
+fn immersed_interfaces_of_stiff_bars_with_sources_do_not_know_the_contrast() {
+    let error = |contrast, spacing| report(&scene(&bar(contrast, spacing))).errors.expect("exact").l2;
+    let few = error(1e2, 0.04);
+    for contrast in [1e4, 1e6, 1e10] {
+        let many = error(contrast, 0.04);
+        assert!(many < 1.1 * few && many < 2e-3, "{contrast:e}: {many:e}, at 100 {few:e}");
+        assert!(error(contrast, 0.02) < 0.7 * many, "{contrast:e}");
+    }
+}
