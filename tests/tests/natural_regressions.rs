@@ -90,3 +90,32 @@ fn immersed_interfaces_of_stiff_bars_with_sources_do_not_know_the_contrast() {
         assert!(error(contrast, 0.02) < 0.7 * many, "{contrast:e}");
     }
 }
+
+#[test]
+fn the_condition_of_a_face_at_a_re_entrant_corner_is_told_on_the_face() {
+    // The wall x = 0.6 above y = 1 has a flux; its lower end is a re-entrant corner.
+    let text = r#"
+dimension = 2
+[domain]
+polygon = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.6, 1.0], [0.6, 1.4], [0.0, 1.4]]
+[points]
+spacing = 0.1
+[[regions]]
+name = "all"
+diffusivity = 1
+exact = "x"
+[[boundaries]]
+face = "all"
+where = "abs(x - 1) > 0.999999"
+dirichlet = "x"
+[[boundaries]]
+face = "all"
+where = "y > 1.0000001"
+neumann = "if(y < 1.3999999, 1, 0)"
+[[boundaries]]
+face = "all"
+neumann = 0
+"#;
+    let error = report(&scene(text)).errors.expect("exact").linf;
+    assert!(error < 1e-11, "{error:e}");
+}
