@@ -91,6 +91,40 @@ fn immersed_interfaces_of_stiff_bars_with_sources_do_not_know_the_contrast() {
     }
 }
 
+/// The free face of a spreader beside its die lies on the plane of the half-space that the die is the part of: u = x.
+#[test]
+fn half_spaces_do_not_take_the_nodes_of_other_faces_on_their_planes() {
+    let text = r#"
+dimension = 2
+[domain]
+polygon = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.6, 1.0], [0.6, 1.4], [0.0, 1.4]]
+[points]
+spacing = 0.05
+[[regions]]
+name = "die"
+half_space = { point = [0.0, 1.0], normal = [0.0, -1.0] }
+diffusivity = 10
+exact = "x"
+[[regions]]
+name = "spreader"
+diffusivity = 1
+exact = "x"
+[[boundaries]]
+face = "all"
+where = "abs(x - 1) > 0.999999"
+dirichlet = "x"
+[[boundaries]]
+face = "all"
+where = "max(max(abs(x - 0.6) - 1e-5, 1.0000001 - y), y - 1.3999999) < 0"
+neumann = 1
+[[boundaries]]
+face = "all"
+neumann = 0
+"#;
+    let error = report(&scene(text)).errors.expect("exact").linf;
+    assert!(error < 1e-11, "{error:e}");
+}
+
 #[test]
 fn the_condition_of_a_face_at_a_re_entrant_corner_is_told_on_the_face() {
     // The wall x = 0.6 above y = 1 has a flux; its lower end is a re-entrant corner.

@@ -29,6 +29,15 @@ const NO_BEND: f64 = 0.7;
 enum Where {
     Inside,
     /// Outside of the domain.
+/// How far round a node on the boundary it is looked what is there, in spacings: far more than [`TIE`], far less than what curves.
+const BESIDE: f64 = 1e-5;
+
+/// How far inside of the domain such a place has to be, over its distance from the node: what runs along the boundary is not.
+const INSIDE: f64 = 0.05;
+
+/// Places on half an edge of the square or cube round a node, by dimension: in the plane they see wedges of 7 degrees.
+const ROUND: [i32; 3] = [1, 8, 2];
+
     Beyond,
     /// On its boundary, with one side outside; or no interface.
     Along,
@@ -104,6 +113,39 @@ impl<const D: usize> RegionMap<D> {
     ///
     /// The interface lies on the surface of the one named first. Where other regions cover that surface at the foot
     /// of `x`, starting points half the reach away along the axes are tried and the nearest valid foot is returned.
+    /// The same for a cloud of a domain. A node on its boundary that is on the surface of a region, with nothing of the region round
+    /// it in the domain, belongs to what there is: a face of the domain may lie on the plane of a half-space beside it.
+    pub fn labels_within(&self, domain: &Domain<D>, cloud: &Cloud<D>) -> Vec<u16> {
+        let of = |(i, (x, &h)): (usize, (&[f64; D], &f64))| {
+            let label = self.label(x, h);
+            match self.shape(label) {
+                Some(shape) if cloud.is_boundary(i) && is_on_surface(shape, x, h) => {
+                    self.label_beside(domain, x, BESIDE * h, label)
+                }
+                _ => label,
+            }
+        };
+        cloud.points().par_iter().zip(cloud.spacing()).enumerate().map(of).collect()
+    }
+
+    /// `label`, where the region reaches to `x` within the domain; else that of the most of what is round `x`.
+    fn label_beside(&self, domain: &Domain<D>, x: &[f64; D], step: f64, label: u16) -> u16 {
+        let around = directions::<D>().map(|direction| axpy(x, step, &direction));
+        let inside = around.filter(|p| domain.distance_estimate(p) < -INSIDE * step);
+        let mut found: Vec<(u16, usize)> = Vec::new();
+        for label in inside.map(|p| self.label(&p, 0.0)) {
+            match found.iter_mut().find(|(known, _)| *known == label) {
+                Some((_, times)) => *times += 1,
+                None => found.push((label, 1)),
+            }
+        }
+        let most = found.iter().max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)));
+        match most {
+            Some(&(most, _)) if found.iter().all(|(known, _)| *known != label) => most,
+            _ => label,
+        }
+    }
+
     ///
     /// # Errors
     /// [`ProjectionError`] where the surface is out of reach, and [`ProjectionError::NotAnInterface`] where it does
@@ -190,4 +232,26 @@ impl<const D: usize> RegionMap<D> {
         }
         Ok(found)
     }
+}
+
+/// Whether a point is on the surface of a shape, up to [`TIE`].
+fn is_on_surface<const D: usize>(shape: &Shape<D>, x: &[f64; D], spacing: f64) -> bool {
+    shape.level(x).abs() <= TIE * spacing * norm(&shape.gradient(x))
+}
+
+/// Unit vectors to the places of a grid on the surface of a square or cube.
+fn directions<const D: usize>() -> impl Iterator<Item = [f64; D]> {
+    let most = ROUND[D.clamp(1, 3) - 1];
+    let side = (2 * most + 1) as usize;
+    (0..side.pow(D as u32)).filter_map(move |code| {
+        let mut rest = code;
+        let place: [i32; D] = std::array::from_fn(|_| {
+            let digit = (rest % side) as i32 - most;
+            rest /= side;
+            digit
+        });
+        let outermost = place.iter().any(|c| c.abs() == most);
+        let place = place.map(f64::from);
+        outermost.then(|| scale(1.0 / norm(&place), &place))
+    })
 }

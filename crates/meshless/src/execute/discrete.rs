@@ -79,7 +79,7 @@ impl<const D: usize> Discrete<D> {
         let start = Instant::now();
         let labels = if plan.runs(Stage::Regions) {
             progress.stage(Stage::Regions);
-            let labels = given.unwrap_or_else(|| regions.labels(&cloud));
+            let labels = given.unwrap_or_else(|| regions.labels_within(&domain, &cloud));
             build::check_regions_are_met(scene, &labels)?;
             build::check_interfaces_touch(scene, &labels, &lists)?;
             labels
