@@ -1,7 +1,7 @@
 //! Problems that are given by their data, which once were answered wrongly: each by what is known of its solution.
 
 use meshless::report::Report;
-use meshless::scene::Scene;
+use meshless::scene::{MethodName, Scene};
 use meshless_tests::solve::solve_scene;
 
 fn scene(text: &str) -> Scene {
@@ -10,6 +10,12 @@ fn scene(text: &str) -> Scene {
 
 fn report(scene: &Scene) -> Report {
     solve_scene(scene).expect("the scene can be solved").report
+}
+
+fn with(text: &str, method: MethodName) -> Report {
+    let mut scene = scene(text);
+    scene.method.name = method;
+    report(&scene)
 }
 
 /// A triangle with u = x in it and nothing outside: its three jumps of the flux, by the sector seen from (0, -0.1).
@@ -88,6 +94,35 @@ fn immersed_interfaces_of_stiff_bars_with_sources_do_not_know_the_contrast() {
         let many = error(contrast, 0.04);
         assert!(many < 1.1 * few && many < 2e-3, "{contrast:e}: {many:e}, at 100 {few:e}");
         assert!(error(contrast, 0.02) < 0.7 * many, "{contrast:e}");
+    }
+}
+
+#[test]
+fn immersed_interfaces_of_boxes_that_begin_at_the_wall_are_found() {
+    let text = r#"
+dimension = 2
+[domain]
+box = { min = [-1.0, -1.0], max = [1.0, 1.0] }
+[points]
+spacing = 0.08
+[[regions]]
+name = "in"
+box = { min = [-1.0, -0.4], max = [0.0, 0.4] }
+diffusivity = 2
+[[regions]]
+name = "out"
+diffusivity = 1
+[[boundaries]]
+face = "all"
+dirichlet = "x"
+[[probes]]
+at = [-0.4, 0.1]
+[[probes]]
+at = [0.3, -0.2]
+"#;
+    let [own, other] = [MethodName::ImmersedInterface, MethodName::Sharp].map(|method| with(text, method));
+    for (a, b) in own.probes.iter().zip(&other.probes) {
+        assert!((a.value - b.value).abs() < 0.02, "{} for {}", a.value, b.value);
     }
 }
 
