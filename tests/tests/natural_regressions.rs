@@ -160,6 +160,100 @@ neumann = 0
     assert!(error < 1e-11, "{error:e}");
 }
 
+/// The quarter of a cell of stiff fibres in a matrix: prescribed values cut the fibre. The flux is half of the effective diffusivity of
+/// a square array at a fraction of 0.7, whose values are those of Perrins, McKenzie and McPhedran.
+fn quarter(contrast: f64, spacing: f64) -> String {
+    format!(
+        r#"
+dimension = 2
+[domain]
+box = {{ min = [0.0, 0.0], max = [0.5, 0.5] }}
+[points]
+spacing = {spacing}
+[[regions]]
+name = "fibre"
+sphere = {{ center = [0.0, 0.0], radius = 0.472034871941 }}
+diffusivity = {contrast:e}
+[[regions]]
+name = "matrix"
+diffusivity = 1
+[[boundaries]]
+face = "left"
+dirichlet = 2
+[[boundaries]]
+face = "right"
+dirichlet = 2.5
+[[boundaries]]
+face = "all"
+neumann = 0
+[output]
+fluxes = true
+"#
+    )
+}
+
+#[test]
+fn fluxes_through_prescribed_values_are_right_where_they_cut_a_stiff_region() {
+    let fluxes = |contrast| {
+        let report = report(&scene(&quarter(contrast, 0.025)));
+        let fluxes = report.fluxes.expect("asked for");
+        [fluxes.boundaries[0].flux, fluxes.boundaries[1].flux]
+    };
+    let [left, right] = fluxes(1e10);
+    assert!(
+        (left + 3.716_354_664_4).abs() < 2e-3 && (right - 3.716_354_664_4).abs() < 2e-3,
+        "{left} {right}"
+    );
+    for contrast in [1e3, 1e6] {
+        let [left, right] = fluxes(contrast);
+        assert!((left + right).abs() < 5e-3, "{contrast:e}: {left} {right}");
+    }
+}
+
+/// Values that differ along the stiff region, a source in it, a flux that is prescribed on it: what it carries is no matter of what is
+/// beside it, and it keeps its nodal values.
+#[test]
+fn stiff_regions_that_carry_large_fluxes_are_exact_beside_soft_ones() {
+    let bar = |source: &str, u: &str, end: &str| {
+        format!(
+            r#"
+dimension = 2
+[domain]
+box = {{ min = [0.0, 0.0], max = [1.0, 1.0] }}
+[points]
+spacing = 0.06
+[[regions]]
+name = "bar"
+box = {{ min = [0.0, 0.0], max = [1.0, 0.43] }}
+diffusivity = 1e6
+source = "{source}"
+exact = "{u}"
+[[regions]]
+name = "soft"
+diffusivity = 1
+exact = "{u}"
+source = "{soft}"
+[[boundaries]]
+face = "left"
+dirichlet = "1"
+[[boundaries]]
+face = "right"
+{end}
+[[boundaries]]
+face = "all"
+neumann = 0
+"#,
+            soft = if source == "0" { "0" } else { "-2" },
+        )
+    };
+    let cases =
+        [("0", "1 + x", "neumann = 1"), ("-2e6", "1 + x^2", "neumann = 2"), ("0", "1 + x", "dirichlet = 2")];
+    for (source, u, end) in cases {
+        let error = report(&scene(&bar(source, u, end))).errors.expect("exact").l2;
+        assert!(error < 1e-9, "{u}, {end}: {error:e}");
+    }
+}
+
 #[test]
 fn the_condition_of_a_face_at_a_re_entrant_corner_is_told_on_the_face() {
     // The wall x = 0.6 above y = 1 has a flux; its lower end is a re-entrant corner.
