@@ -1,5 +1,6 @@
 //! Problems that are given by their data, which once were answered wrongly: each by what is known of its solution.
 
+use meshless::plan::Plan;
 use meshless::report::Report;
 use meshless::scene::{MethodName, Scene};
 use meshless_tests::solve::solve_scene;
@@ -281,4 +282,37 @@ neumann = 0
 "#;
     let error = report(&scene(text)).errors.expect("exact").linf;
     assert!(error < 1e-11, "{error:e}");
+}
+
+#[test]
+fn spacings_that_fall_to_a_point_are_foreseen_and_built() {
+    let text = |spacing: &str| {
+        format!(
+            r#"
+dimension = 2
+[domain]
+box = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}
+[points]
+spacing = "{spacing}"
+[[regions]]
+name = "all"
+diffusivity = 1
+exact = "x"
+[[boundaries]]
+face = "all"
+dirichlet = "x"
+"#
+        )
+    };
+    for spacing in ["1e-5 + 0.1*sqrt(x^2 + y^2)", "1e-6+0.1*sqrt(x^2+y^2)"] {
+        let scene = scene(&text(spacing));
+        let foreseen = Plan::new(&scene).expect("a plan").predicted.unknowns;
+        let report = report(&scene);
+        let made = report.unknowns as f64;
+        assert!((foreseen / made - 1.0).abs() < 0.3, "{spacing}: {foreseen} for {made}");
+        assert!(report.errors.expect("exact").linf < 1e-10);
+    }
+    let vanishing = scene(&text("0.1*sqrt((x - 0.3)^2 + y^2)"));
+    let message = Plan::new(&vanishing).and_then(|_| solve_scene(&vanishing)).err().expect("refused");
+    assert!(message.to_string().contains("falls to zero at about [0.29999"), "{message}");
 }
