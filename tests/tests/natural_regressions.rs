@@ -255,6 +255,41 @@ neumann = 0
     }
 }
 
+/// Half of a square column, 20 above and 0 beside it: by the series, 9.6647 at (1, 7).
+#[test]
+fn where_two_prescribed_values_meet_their_mean_holds() {
+    let text = r#"
+dimension = 2
+[domain]
+box = { min = [0.0, 0.0], max = [4.0, 8.0] }
+[points]
+spacing = 0.2
+[[regions]]
+name = "column"
+diffusivity = 1
+[[boundaries]]
+face = "top"
+dirichlet = 20
+[[boundaries]]
+face = "right"
+neumann = 0
+[[boundaries]]
+face = "all"
+dirichlet = 0
+[[probes]]
+at = [1.0, 7.0]
+"#;
+    let series: f64 = (0..200)
+        .map(|n| {
+            let a = f64::from(2 * n + 1) * std::f64::consts::PI / 8.0;
+            let up = (-a).exp() * (1.0 - (-14.0 * a).exp()) / (1.0 - (-16.0 * a).exp());
+            20.0 * 4.0 / (8.0 * a) * a.sin() * up
+        })
+        .sum();
+    let probe = with(text, MethodName::Sharp).probes[0].value;
+    assert!((probe - series).abs() < 3e-3, "{probe} for {series}");
+}
+
 #[test]
 fn the_condition_of_a_face_at_a_re_entrant_corner_is_told_on_the_face() {
     // The wall x = 0.6 above y = 1 has a flux; its lower end is a re-entrant corner.
