@@ -128,7 +128,7 @@ pub struct InterfacePoint {
 /// weigh the sides of an interface against each other must know the scales before they make a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplitRows {
-    /// The change of unknowns over all nodes; prescribed nodes have scale 1 and no constant.
+    /// The change of unknowns over all nodes; prescribed nodes have no constant.
     pub split: Split,
     /// Coefficients of every `C_K`: row, value.
     pub columns: Vec<Vec<(u32, f64)>>,

@@ -12,6 +12,7 @@ mod corner;
 mod dense;
 mod fit;
 mod harmonic;
+mod held;
 mod interface;
 mod maker;
 mod params;
@@ -199,7 +200,7 @@ fn assemble<const D: usize>(
             out.add_to_row_sum(row.mass.iter().sum());
         })
     });
-    let constants = if unknowns.constants() == 0 {
+    let constants = if unknowns.constants() == 0 && !unknowns.any_held() {
         None
     } else {
         let mut columns = vec![Vec::new(); unknowns.constants()];
