@@ -44,6 +44,7 @@
 //! ```
 
 mod adjacency;
+mod corners;
 pub mod dcpse;
 mod diagnosis;
 mod error;
@@ -69,6 +70,7 @@ mod system;
 pub mod thin_layers;
 
 pub use adjacency::adjacent_pairs;
+pub use corners::{Corner, Obstacle, corners};
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
 pub use error::{MethodError, RegionName};
 pub use field::{Field, ScalarField};

@@ -69,6 +69,8 @@ pub(super) struct Fit<const D: usize> {
     /// Factors of the values in their rows, one a node: the weight of the row, and the units of the part.
     pub(super) weights: Vec<f64>,
     wanted: Vec<f64>,
+    /// What the columns were multiplied by; empty where they were not.
+    column_units: Vec<f64>,
     z: Vec<f64>,
     /// Factors of the rows in the functional that was asked for last.
     pub(super) factors: Vec<f64>,
@@ -102,13 +104,28 @@ impl<const D: usize> Fit<D> {
         self.in_time = maker.rates.is_some();
         self.parts.prepare(maker, stencil);
         self.assemble(maker, stencil);
-        if stencil.parts.len() == 1 {
+        self.column_units.clear();
+        if stencil.vertex.is_some() {
+            self.equilibrate();
+        }
+        if stencil.parts.len() == 1 && stencil.vertex.is_none() {
             if self.qr.factor(RANK_TOLERANCE) {
                 return;
             }
             self.assemble(maker, stencil);
         }
         self.qr.factor_pivoted(RANK_TOLERANCE);
+    }
+
+    /// Makes all columns as long as 1: functions that live in a soft sector alone are as good as others.
+    fn equilibrate(&mut self) {
+        for column in 0..self.qr.columns() {
+            let entries = self.qr.column_mut(column);
+            let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let unit = if length > 0.0 { 1.0 / length } else { 1.0 };
+            entries.iter_mut().for_each(|x| *x *= unit);
+            self.column_units.push(unit);
+        }
     }
 
     /// The derivative along an axis of the own polynomial at the node, or with `None` its value there. Returns what is
@@ -155,7 +172,21 @@ impl<const D: usize> Fit<D> {
             particular.iter_mut().zip(added).for_each(|(sum, p)| *sum += p);
         }
         self.parts.jet = jet;
-        self.combine(particular, out)
+        self.wanted.iter_mut().zip(&self.column_units).for_each(|(entry, unit)| *entry *= unit);
+        let left_over = self.combine(particular, out);
+        for Wanted { part, functional, .. } in wanted {
+            let share = self.share(maker, *part, functional.value);
+            if share.factor != 0.0 {
+                out.add(share);
+            }
+        }
+        left_over
+    }
+
+    /// What constants of parts add to `factor` times the polynomial of one beside its columns.
+    fn share(&self, maker: &Maker<'_, D>, part: usize, factor: f64) -> Share {
+        let beside = self.parts.constants_beside(maker, part);
+        beside.map_or_else(Share::default, |(of, less, each)| Share { of, less, factor: factor * each })
     }
 
     /// Solves for all polynomials at once; false where the rows do not determine them all.
@@ -217,7 +248,8 @@ impl<const D: usize> Fit<D> {
     }
 
     fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
-        let boundary: usize = stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum();
+        let at_vertex = stencil.vertex.is_some();
+        let boundary: usize = if at_vertex { 0 } else { stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum() };
         let at_nodes = stencil.part_of.iter().filter(|&&part| self.parts.has_rows(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
             2 + sides.iter().filter(|&&part| self.parts.has_rows(part)).count()
@@ -285,6 +317,7 @@ impl<const D: usize> Fit<D> {
             false => 1.0,
         };
         self.given.resize(nodes, Given::default());
+        let vertex = stencil.vertex.map(|vertex| maker.vertices.get(vertex));
         let mut jet = std::mem::take(&mut self.parts.jet);
         for (row, (&j, &part)) in stencil.nodes.iter().zip(&stencil.part_of).enumerate() {
             let j = j as usize;
@@ -292,10 +325,17 @@ impl<const D: usize> Fit<D> {
             let slopes = !maker.boundary_rows[j].is_empty();
             self.parts.evaluate(maker, part, &z, slopes, &mut jet);
             let weight = louder(j) * (-DECAY * z.iter().map(|z| z * z).sum::<f64>()).exp();
+            let told = vertex.is_none_or(|vertex| vertex.is_told_by(&points[j]));
+            // The functions of a vertex are in the units of the nodes: those of softer parts are weighed instead.
+            let weight = if told { weight * self.parts.loudness(part) } else { 0.0 };
             self.weights.push(weight * self.parts.omega(part));
-            let mut given = Given::default();
+            let mut given = Given { share: self.share(maker, part, -weight), ..Given::default() };
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
+            if vertex.is_some() {
+                // Its functions meet all conditions.
+                continue;
+            }
             let (eta, scale) = (maker.problem.eta[j], self.parts.scale(part));
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);

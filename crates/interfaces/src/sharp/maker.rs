@@ -12,6 +12,7 @@ use super::rate::{RateFit, Rates};
 use super::stencil::{Heard, Stencil};
 use super::thickness;
 use super::unknowns::Unknowns;
+use super::vertex::Vertices;
 use crate::parallel;
 use crate::{Condition, GradientRow, Material, MethodError, Problem};
 
@@ -49,6 +50,8 @@ pub(super) struct Maker<'a, const D: usize> {
     pub(super) rates: Option<Rates<D>>,
     pub(super) unknowns: &'a Unknowns,
     pub(super) interfaces: &'a InterfacePoints<D>,
+    /// Vertices where functions of their own take the place of polynomials.
+    pub(super) vertices: Vertices,
     pub(super) boundary_rows: Vec<Vec<BoundaryRow<D>>>,
     /// Gradient of the logarithm of the diffusivity at every node; none where it is constant in every region.
     slopes: Option<Vec<[f64; D]>>,
@@ -116,6 +119,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             rates: params.unsteady.then(|| Rates::new(params.order)),
             unknowns,
             interfaces,
+            vertices: Vertices::find(problem, &params, unknowns, nodes),
             boundary_rows: boundary_rows(problem)?,
             slopes: slopes(problem),
             nodes,
@@ -196,7 +200,8 @@ impl<'a, const D: usize> Maker<'a, D> {
         let mut count = self.params.stencil_nodes(D);
         for attempt in 0..=ENLARGEMENTS {
             let at = (center, own, heard);
-            stencil.gather(at, count, self.nodes, self.unknowns, (self.interfaces, &self.points));
+            let interfaces = (self.interfaces, &self.points);
+            stencil.gather(at, count, self.nodes, self.unknowns, interfaces, &self.vertices);
             fit.factor(self, stencil);
             let remainder = fit.functional(self, stencil, None, combination);
             if remainder <= REPRODUCTION && accept(combination) {
@@ -245,9 +250,10 @@ impl<'a, const D: usize> Maker<'a, D> {
         let coefficients: Vec<f64> = combination.values[1..].iter().map(|h| -factor * h).collect();
         let uniform =
             |&other: &u32| self.unknowns.scale[other as usize] == self.unknowns.scale[part as usize];
+        let held = stencil.vertex.is_some_and(|vertex| self.vertices.get(vertex).is_held());
         let exchanges = |&j: &u32| self.boundary_rows[j as usize].iter().any(|row| row.exchange != 0.0);
         // Constants are reproduced where nothing but differences is prescribed: no rounding remains of their sum.
-        let row_sum = if stencil.parts.iter().all(uniform) && !stencil.nodes.iter().any(exchanges) {
+        let row_sum = if !held && stencil.parts.iter().all(uniform) && !stencil.nodes.iter().any(exchanges) {
             0.0
         } else {
             factor * (1.0 - combination.values[0]) + coefficients.iter().sum::<f64>()

@@ -23,6 +23,7 @@ mod sample;
 mod stencil;
 mod thickness;
 mod unknowns;
+mod vertex;
 
 use std::time::Instant;
 

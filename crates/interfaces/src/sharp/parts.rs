@@ -6,6 +6,7 @@ use super::dense;
 use super::maker::Maker;
 use super::params::Form;
 use super::stencil::Stencil;
+use super::vertex::{self, Valued};
 use crate::{Field, Material};
 
 /// What a row does to a polynomial in z: factors of its value, its gradient and its Laplacian.
@@ -75,6 +76,8 @@ enum Equation {
     /// It varies: coefficients of what each harmonic polynomial lacks to solve the equation, of the particular part of the
     /// source, and of that of a source of 1.
     Adapted(Vec<f64>),
+    /// The functions of a vertex, which all parts have in common.
+    Vertex,
 }
 
 /// The polynomial of one part.
@@ -85,6 +88,8 @@ struct Part {
     omega: f64,
     /// The scale of the unknown in its place, `s' = s / omega`.
     scale: f64,
+    /// Weight of the values of the part where its unknown is left as it is.
+    loudness: f64,
     first_column: usize,
     /// One more column: a source that is constant, and not known.
     open: bool,
@@ -128,9 +133,28 @@ fn evaluate_monomials<const D: usize>(basis: &Basis<D>, z: &[f64; D], slopes: bo
     }
 }
 
+/// How the functions of a vertex enter a stencil.
+#[derive(Debug, Clone)]
+struct AtVertex<const D: usize> {
+    /// Which one.
+    vertex: usize,
+    /// The parts of the stencil.
+    parts: Vec<u32>,
+    center: [f64; D],
+    radius: f64,
+    /// Distance of the farthest node from the vertex.
+    reach: f64,
+    /// The place of the part whose constant the others are told from, that of the smallest scale; `None` where u is prescribed at
+    /// the vertex.
+    reference: Option<usize>,
+    /// What the data add at the point that was evaluated last, and what a source of 1 does.
+    given: [Valued<D>; 2],
+}
+
 /// The polynomials of a stencil.
 #[derive(Debug, Default)]
 pub(super) struct Parts<const D: usize> {
+    at_vertex: Option<AtVertex<D>>,
     parts: Vec<Part>,
     columns: usize,
     pub(super) jet: Jet<D>,
@@ -149,6 +173,10 @@ impl<const D: usize> Parts<D> {
     pub(super) fn prepare(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         self.parts.resize_with(stencil.parts.len(), Part::default);
         self.columns = 0;
+        self.at_vertex = None;
+        if let Some(vertex) = stencil.vertex {
+            return self.prepare_at_vertex(maker, stencil, vertex);
+        }
         for place in 0..stencil.parts.len() {
             let part = stencil.parts[place] as usize;
             let material = &maker.problem.materials[maker.unknowns.label[part] as usize];
@@ -168,8 +196,39 @@ impl<const D: usize> Parts<D> {
             let open = maker.rates.is_some() && is_softer(maker, stencil, place);
             self.columns += basis.len() + usize::from(open);
             self.parts[place] =
-                Part { equation: solved.unwrap_or_default(), omega, scale, first_column, open };
+                Part { equation: solved.unwrap_or_default(), omega, loudness: 1.0, scale, first_column, open };
         }
+    }
+
+    fn prepare_at_vertex(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>, vertex: usize) {
+        let functions = maker.vertices.get(vertex);
+        for place in 0..stencil.parts.len() {
+            let (loudness, scale) = (omega(maker, stencil, place), maker.unknowns.scale[stencil.parts[place] as usize]);
+            self.parts[place] =
+                Part { equation: Equation::Vertex, omega: 1.0, loudness, scale, ..Part::default() };
+        }
+        self.columns = functions.columns();
+        let points = maker.problem.cloud.points();
+        let reach = stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(functions.distance(&points[j as usize])));
+        let scale = |place: usize| maker.unknowns.scale[stencil.parts[place] as usize];
+        let softest_first = (0..stencil.parts.len()).min_by(|&a, &b| scale(a).total_cmp(&scale(b)).then(a.cmp(&b)));
+        let reference = softest_first.filter(|_| !functions.is_held());
+        let given = [(0.0, [0.0; D]); 2];
+        let (center, radius, parts) = (stencil.center, stencil.radius, stencil.parts.clone());
+        self.at_vertex = Some(AtVertex { vertex, parts, center, radius, reach, reference, given });
+    }
+
+    /// What constants of parts add to the polynomial of one, which stand beside the functions of a vertex: the place of the part that is
+    /// added, that of the one that is taken away, the factor of their difference.
+    pub(super) fn constants_beside(
+        &self,
+        maker: &Maker<'_, D>,
+        part: usize,
+    ) -> Option<(usize, Option<usize>, f64)> {
+        let AtVertex { reference, parts, .. } = self.at_vertex.as_ref()?;
+        let scale = maker.unknowns.scale[parts[part] as usize];
+        // `c_reference + s_reference W = c + s w`, or the prescribed value in place of the left side.
+        (*reference != Some(part)).then_some((part, *reference, -1.0 / scale))
     }
 
     /// Writes a field at samples of the stencil's ball to `values`; `None` where it is not a number somewhere.
@@ -258,6 +317,11 @@ impl<const D: usize> Parts<D> {
         self.parts[part].omega
     }
 
+    /// Weight of the values of the nodes of a part, beside that of their distance.
+    pub(super) fn loudness(&self, part: usize) -> f64 {
+        self.parts[part].loudness
+    }
+
     /// The scale of what enters.
     pub(super) fn scale(&self, part: usize) -> f64 {
         self.parts[part].scale
@@ -306,6 +370,7 @@ impl<const D: usize> Parts<D> {
         self.z.clear();
         self.z.extend(z);
         match &self.parts[part].equation {
+            Equation::Vertex => self.evaluate_at_vertex(maker, part, z, jet),
             Equation::Rows => maker.complete_basis.evaluate(z, jet),
             Equation::Harmonic { source, .. } => {
                 maker.harmonic_basis.evaluate(z, jet);
@@ -332,6 +397,15 @@ impl<const D: usize> Parts<D> {
         }
     }
 
+    fn evaluate_at_vertex(&mut self, maker: &Maker<'_, D>, part: usize, z: &[f64; D], jet: &mut Jet<D>) {
+        let Some(at) = &mut self.at_vertex else { return };
+        let x = std::array::from_fn(|k| at.center[k] + at.radius * z[k]);
+        let scale = |place: usize| maker.unknowns.scale[at.parts[place] as usize];
+        let constant = at.reference.map_or(0.0, |reference| scale(reference) / scale(part));
+        at.given = maker.vertices.get(at.vertex).evaluate(at.parts[part], &x, (at.reach, constant), jet);
+        jet.gradients.iter_mut().flatten().for_each(|slope| *slope *= at.radius);
+    }
+
     /// A functional of the particular part at the point that was evaluated last: for the source, and for a source of 1.
     pub(super) fn apply_to_particular(&self, part: usize, functional: &Row<D>) -> [f64; 2] {
         let of_monomials = |coefficients: &[f64]| -> f64 {
@@ -342,6 +416,9 @@ impl<const D: usize> Parts<D> {
         };
         match &self.parts[part].equation {
             Equation::Rows => [0.0; 2],
+            Equation::Vertex => self.at_vertex.as_ref().map_or([0.0; 2], |at| {
+                at.given.each_ref().map(|given| vertex::apply(functional, given, at.radius))
+            }),
             Equation::Harmonic { source, unit } => {
                 let of_one = unit * self.of_square(functional);
                 let of_source = match source {

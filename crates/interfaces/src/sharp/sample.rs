@@ -178,6 +178,7 @@ impl<const D: usize> Maker<'_, D> {
         let Some((_, Owner { node, .. })) = members.first() else { return Vec::new() };
         let (part, center) = (self.unknowns.part[*node], self.problem.cloud.points()[*node]);
         let solved = self.factor_at((&center, part, Heard::All), scratch, |_| true).is_some()
+            && scratch.stencil.vertex.is_none()
             && scratch.fit.solve(
                 &scratch.stencil,
                 |j| values.w[j as usize],

@@ -5,6 +5,7 @@ use meshless_neighbors::CellList;
 
 use super::interface::InterfacePoints;
 use super::unknowns::Unknowns;
+use super::vertex::Vertices;
 
 /// Points of an interface that are looked at where none is within the stencil.
 const POINTS_ASKED: usize = 24;
@@ -43,6 +44,8 @@ pub(super) struct Stencil<const D: usize> {
     pub(super) parts: Vec<u32>,
     /// What is heard of the nodes.
     pub(super) heard: Heard,
+    /// The vertex whose functions serve it in place of polynomials; the nodes are then those that nothing but its rays is between.
+    pub(super) vertex: Option<usize>,
     /// Points of interfaces between these parts, and the places of the parts of both sides.
     pub(super) points: Vec<(u32, [usize; 2])>,
     linked: Vec<bool>,
@@ -59,6 +62,7 @@ impl<const D: usize> Default for Stencil<D> {
             part_of: Vec::new(),
             parts: Vec::new(),
             heard: Heard::All,
+            vertex: None,
             points: Vec::new(),
             linked: Vec::new(),
             found: Vec::new(),
@@ -76,11 +80,25 @@ impl<const D: usize> Stencil<D> {
         nodes: &CellList<'_, D>,
         unknowns: &Unknowns,
         interfaces: (&InterfacePoints<D>, &CellList<'_, D>),
+        vertices: &Vertices,
     ) {
         (self.center, self.heard) = (*center, heard);
-        self.nodes.clear();
-        self.nodes.extend(nodes.nearest(center, count, &mut self.found));
-        self.radius = self.found.last().map_or(0.0, |last| last.0.sqrt());
+        self.vertex = vertices.near(center);
+        if self.vertex.is_none() {
+            self.nearest(center, count, nodes);
+            self.vertex = vertices.within(center, self.radius);
+        }
+        if let Some(vertex) = self.vertex {
+            // Twice as many are asked as are wanted: some lie beyond what the functions are of.
+            self.nearest(center, 2 * count, nodes);
+            let points = nodes.points();
+            self.nodes.retain(|&j| vertices.get(vertex).reaches(&points[j as usize]));
+            self.nodes.truncate(count);
+            let farthest = self.nodes.last().map(|&j| &points[j as usize]);
+            self.radius = farthest.map_or(0.0, |x| {
+                (0..D).map(|k| (x[k] - center[k]).powi(2)).sum::<f64>().sqrt()
+            });
+        }
         if heard == Heard::OwnPart {
             self.nodes.retain(|&j| unknowns.part[j as usize] == own);
         }
@@ -96,9 +114,15 @@ impl<const D: usize> Stencil<D> {
             });
             self.part_of.push(place);
         }
-        if self.parts.len() > 1 {
+        if self.parts.len() > 1 && self.vertex.is_none() {
             self.gather_points(center, interfaces);
         }
+    }
+
+    fn nearest(&mut self, center: &[f64; D], count: usize, nodes: &CellList<'_, D>) {
+        self.nodes.clear();
+        self.nodes.extend(nodes.nearest(center, count, &mut self.found));
+        self.radius = self.found.last().map_or(0.0, |last| last.0.sqrt());
     }
 
     fn gather_points(

@@ -1,0 +1,455 @@
+//! A vertex with what meets there: sectors, their materials, what holds on the outer rays, and the data along all rays.
+
+use std::f64::consts::TAU;
+
+use meshless_geometry::{FaceId, Vertex};
+use nalgebra::{DMatrix, DVector};
+
+use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
+use crate::{Condition, Problem};
+
+/// Where diffusivities and the kinds of conditions beside a vertex are read, over the length of its shortest ray.
+const BESIDE: f64 = 1e-6;
+
+/// Polynomials along rays that stand for data there have this many degrees more than those of a fit, up to the highest.
+const DEGREES_BEYOND: usize = 4;
+const HIGHEST_DEGREE: usize = 14;
+
+/// How far from whole numbers an exponent may be for its function to count as a polynomial.
+const WHOLE: f64 = 1e-7;
+
+/// Part of the largest coefficient of data below which one is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Part of what the source and the data do at a vertex below which a logarithm or a function of the angle is rounding, or the error
+/// of the polynomials that stand for the data.
+const NEGLIGIBLE: f64 = 1e-7;
+
+/// Angle, in radians, up to which a point belongs to the sector on the other side of a ray as well: rounding.
+const ON_RAY: f64 = 1e-6;
+
+/// Why corner functions do not serve a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Obstacle {
+    /// An interface or a boundary that is curved there.
+    Curved,
+    /// The diffusivity varies in a region that meets there.
+    Varies,
+    /// A flux that depends on u, on a boundary that meets there.
+    Exchange,
+    /// Several parts of the domain touch there.
+    Touching,
+    /// Conditions that change their kind near it, or data that have no value.
+    Data,
+    /// Nodes are too far apart for the sides that meet there.
+    Spacing,
+    /// It is not in the plane, or the method has no corner functions.
+    Method,
+}
+
+impl Obstacle {
+    /// In words.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Curved => "what meets there is curved",
+            Self::Varies => "the diffusivity varies there",
+            Self::Exchange => "the flux through a boundary that meets there depends on u",
+            Self::Touching => "several parts of the domain touch there",
+            Self::Data => "the data there have no value, or change their kind",
+            Self::Spacing => "the sides that meet there are shorter than a few spacings",
+            Self::Method => "the method has no corner functions there",
+        }
+    }
+}
+
+/// A monomial of a polynomial in the coordinates from a vertex: exponents, factor.
+pub(crate) type Monomial = ([u8; 2], f64);
+
+/// A vertex as a local problem.
+#[derive(Debug, Clone)]
+pub(crate) struct Local {
+    /// Where.
+    pub(crate) at: [f64; 2],
+    /// Angle of the first ray.
+    start: f64,
+    /// The sectors, with scale 1.
+    pub(crate) wedge: Wedge,
+    /// Regions of the sectors.
+    pub(crate) labels: Vec<u16>,
+    /// Faces of the outer rays.
+    faces: Vec<FaceId>,
+    /// Distance within which there is nothing else.
+    pub(crate) clear: f64,
+    /// What prevents the corner functions from being exact.
+    pub(crate) obstacle: Option<Obstacle>,
+    /// Exponents and how many functions each has, up to the degree asked for.
+    pub(crate) exponents: Vec<(f64, usize)>,
+}
+
+/// What solves a local problem: `u = c + s w` in every sector.
+#[derive(Debug, Clone)]
+pub(crate) struct LocalSolution {
+    /// Homogeneous functions of `r / R`.
+    pub(crate) functions: Vec<Harmonic>,
+    /// What the data and the source add, in `r / R`.
+    pub(crate) forced: Vec<Forced>,
+    /// What a source of 1 everywhere adds, beside its polynomial.
+    pub(crate) unit: Forced,
+}
+
+/// The scales in which a local problem is solved.
+#[derive(Debug, Clone)]
+pub(crate) struct Scales {
+    /// Of every sector's unknown.
+    pub(crate) scale: Vec<f64>,
+    /// What is known of its constant.
+    pub(crate) offset: Vec<f64>,
+    /// The distance R that r is divided by.
+    pub(crate) radius: f64,
+    /// Polynomials in the coordinates over R that have the right Laplacian in every sector.
+    pub(crate) sources: Vec<Vec<Monomial>>,
+}
+
+impl Scales {
+    /// Scale 1 everywhere, and what the sources are right at the vertex.
+    pub(crate) fn plain<const D: usize>(problem: &Problem<'_, D>, local: &Local) -> Self {
+        let sectors = local.wedge.sectors.len();
+        let radius = 0.5 * local.clear;
+        let source = |k: usize| {
+            let material = &problem.materials[local.labels[k] as usize];
+            let f = material.source.as_ref().map_or(0.0, |f| f.at(&in_space(local.inside(k, BESIDE * local.clear))));
+            let f = if f.is_finite() { f } else { 0.0 };
+            square(-radius * radius * f / (4.0 * local.wedge.sectors[k].eta))
+        };
+        Self { scale: vec![1.0; sectors], offset: vec![0.0; sectors], radius, sources: (0..sectors).map(source).collect() }
+    }
+}
+
+impl Local {
+    /// The point at a distance in the middle of a sector.
+    pub(crate) fn inside(&self, sector: usize, distance: f64) -> [f64; 2] {
+        let before: f64 = self.wedge.sectors[..sector].iter().map(|s| s.opening).sum();
+        let (sin, cos) = (self.start + before + 0.5 * self.wedge.sectors[sector].opening).sin_cos();
+        [self.at[0] + distance * cos, self.at[1] + distance * sin]
+    }
+
+    /// The local problems at a vertex: one for every part of the domain that meets there.
+    pub(crate) fn all<const D: usize>(problem: &Problem<'_, D>, vertex: &Vertex, degree: f64) -> Vec<Self> {
+        let count = vertex.rays.len();
+        let outside: Vec<usize> = (0..count).filter(|&k| vertex.sectors[k].is_none()).collect();
+        let firsts: Vec<usize> = match outside.len() {
+            0 => vec![0],
+            _ => outside.iter().map(|k| (k + 1) % count).filter(|&k| vertex.sectors[k].is_some()).collect(),
+        };
+        let touching = (firsts.len() > 1).then_some(Obstacle::Touching);
+        let of_part = |&first: &usize| {
+            let own = (0..count).map(|k| (first + k) % count).take_while(|&k| vertex.sectors[k].is_some());
+            Self::of_part(problem, vertex, &own.collect::<Vec<_>>(), degree)
+        };
+        let mut all: Vec<Self> = firsts.iter().filter_map(of_part).collect();
+        all.iter_mut().for_each(|local| local.obstacle = local.obstacle.or(touching));
+        all
+    }
+
+    fn of_part<const D: usize>(
+        problem: &Problem<'_, D>,
+        vertex: &Vertex,
+        own: &[usize],
+        degree: f64,
+    ) -> Option<Self> {
+        let closed = own.len() == vertex.rays.len();
+        let mut obstacle = None;
+        let mut note = |found: bool, what: Obstacle| {
+            if found && obstacle.is_none() {
+                obstacle = Some(what);
+            }
+        };
+        let mut rays: Vec<usize> = own.to_vec();
+        if !closed {
+            rays.push((own[own.len() - 1] + 1) % vertex.rays.len());
+        }
+        note(rays.iter().any(|&k| !vertex.rays[k].straight), Obstacle::Curved);
+        let beside = BESIDE * vertex.clear;
+        let labels: Vec<u16> = own.iter().filter_map(|&k| vertex.sectors[k]).collect();
+        let start = vertex.rays[own[0]].angle;
+        let (mut sectors, mut turned) = (Vec::new(), start);
+        for (&k, &label) in own.iter().zip(&labels) {
+            let opening = vertex.opening(k);
+            let (sin, cos) = (turned + 0.5 * opening).sin_cos();
+            let x = in_space([vertex.at[0] + beside * cos, vertex.at[1] + beside * sin]);
+            let diffusivity = &problem.materials.get(label as usize)?.diffusivity;
+            note(diffusivity.as_constant().is_none(), Obstacle::Varies);
+            let eta = diffusivity.at(&x);
+            if !(eta > 0.0 && eta.is_finite()) {
+                return None;
+            }
+            sectors.push(Sector { opening, eta, scale: 1.0 });
+            turned += opening;
+        }
+        let outer = [rays[0], rays[rays.len() - 1]];
+        let faces: Vec<FaceId> =
+            if closed { Vec::new() } else { outer.iter().filter_map(|&k| vertex.rays[k].face).collect() };
+        let mut ends = None;
+        if !closed {
+            let [first, last] = [faces.first()?, faces.get(1)?];
+            let mut found = [End::Flux; 2];
+            for (end, (&ray, &face)) in found.iter_mut().zip(outer.iter().zip([first, last])) {
+                let x = in_space(vertex.along(ray, beside));
+                match problem.boundary.condition(face, &x) {
+                    Some(Condition::Dirichlet(_)) => *end = End::Dirichlet,
+                    Some(Condition::Robin { a, .. }) => note(a != 0.0, Obstacle::Exchange),
+                    Some(Condition::Neumann(_) | Condition::Flux(_)) => {}
+                    None => note(true, Obstacle::Data),
+                }
+            }
+            ends = Some(found);
+        }
+        let wedge = Wedge { sectors, ends };
+        let exponents = wedge.exponents(degree);
+        Some(Self { at: vertex.at, start, wedge, labels, faces, clear: vertex.clear, obstacle, exponents })
+    }
+
+    /// The smallest exponent whose function is no polynomial in the sectors.
+    pub(crate) fn broken_exponent(&self) -> Option<f64> {
+        self.exponents.iter().map(|e| e.0).find(|power| (power - power.round()).abs() > WHOLE)
+    }
+
+    /// Sector, distance and angle from the sector's middle of a point; of a point on a ray, the sector of which `prefers` holds.
+    pub(crate) fn place(&self, x: &[f64; 2], prefers: impl Fn(usize) -> bool) -> (usize, f64, f64) {
+        let (dx, dy) = (x[0] - self.at[0], x[1] - self.at[1]);
+        let r = dx.hypot(dy);
+        let sectors = &self.wedge.sectors;
+        if r == 0.0 {
+            return ((0..sectors.len()).find(|&k| prefers(k)).unwrap_or(0), 0.0, 0.0);
+        }
+        let total: f64 = sectors.iter().map(|s| s.opening).sum();
+        let mut turn = (dy.atan2(dx) - self.start).rem_euclid(TAU);
+        // Outside, the nearer end.
+        if self.wedge.ends.is_some() && turn > 0.5 * (total + TAU) {
+            turn -= TAU;
+        }
+        let (mut sector, mut from) = (0, 0.0);
+        while sector + 1 < sectors.len() && turn > from + sectors[sector].opening {
+            from += sectors[sector].opening;
+            sector += 1;
+        }
+        if !prefers(sector) {
+            let count = sectors.len();
+            if turn - from < ON_RAY && (sector > 0 || self.wedge.ends.is_none()) {
+                let before = (sector + count - 1) % count;
+                if prefers(before) {
+                    return (before, r, 0.5 * sectors[before].opening + (turn - from));
+                }
+            }
+            let to = from + sectors[sector].opening;
+            if to - turn < ON_RAY && (sector + 1 < count || self.wedge.ends.is_none()) {
+                let after = (sector + 1) % count;
+                if prefers(after) {
+                    return (after, r, turn - to - 0.5 * sectors[after].opening);
+                }
+            }
+        }
+        (sector, r, turn - from - 0.5 * sectors[sector].opening)
+    }
+
+    /// The point at a distance along a ray: that before sector k, or the last one.
+    fn on_ray(&self, ray: usize, distance: f64) -> [f64; 2] {
+        let turned: f64 = self.wedge.sectors[..ray].iter().map(|s| s.opening).sum();
+        let (sin, cos) = (self.start + turned).sin_cos();
+        [self.at[0] + distance * cos, self.at[1] + distance * sin]
+    }
+
+    /// Solves the local problem with its data and the polynomials of its sources; an obstacle where these have no values.
+    pub(crate) fn solve<const D: usize>(
+        &self,
+        problem: &Problem<'_, D>,
+        scales: &Scales,
+        degree: usize,
+    ) -> Result<LocalSolution, Obstacle> {
+        let mut wedge = self.wedge.clone();
+        wedge.sectors.iter_mut().zip(&scales.scale).for_each(|(sector, &scale)| sector.scale = scale);
+        let functions: Vec<Harmonic> =
+            self.exponents.iter().flat_map(|&(power, count)| wedge.functions(power, count)).collect();
+        let resonant = |power: f64| -> Vec<Harmonic> {
+            let same = |f: &&Harmonic| power > 0.0 && (f.power - power).abs() < WHOLE;
+            functions.iter().filter(same).map(|f| Harmonic { power, ..f.clone() }).collect()
+        };
+        let data_degree = (degree + DEGREES_BEYOND).min(HIGHEST_DEGREE);
+        let mut data = self.data(problem, &wedge, scales, data_degree).ok_or(Obstacle::Data)?;
+        add_sources(&wedge, self.start, &scales.sources, &mut data);
+        let largest = data.iter().flat_map(numbers).fold(0.0_f64, |m, x| m.max(x.abs()));
+        let mut forced = Vec::new();
+        for (power, mut data) in data.into_iter().enumerate() {
+            round(&mut data, ROUNDING * largest);
+            let power = power as f64;
+            forced.push(wedge.forced(power, &data, &resonant(power)).ok_or(Obstacle::Data)?);
+        }
+        let units: Vec<Vec<Monomial>> = wedge
+            .sectors
+            .iter()
+            .map(|s| square(-scales.radius * scales.radius / (4.0 * s.eta * s.scale)))
+            .collect();
+        let mut unit = vec![RayData::default(); 3];
+        unit.iter_mut().for_each(|data| *data = empty(&wedge));
+        add_sources(&wedge, self.start, &units, &mut unit);
+        let unit = wedge.forced(2.0, &unit[2], &resonant(2.0)).ok_or(Obstacle::Data)?;
+        Ok(LocalSolution { functions, forced, unit })
+    }
+
+    /// The jumps and values along the rays as polynomials of r / R, one entry a power; fluxes times r.
+    fn data<const D: usize>(
+        &self,
+        problem: &Problem<'_, D>,
+        wedge: &Wedge,
+        scales: &Scales,
+        degree: usize,
+    ) -> Option<Vec<RayData>> {
+        let mut all = vec![empty(wedge); degree + 2];
+        let radius = scales.radius;
+        let sectors = wedge.sectors.len();
+        for ray in 0..wedge.inner_rays() {
+            let next = (ray + 1) % sectors;
+            all[0].values[ray] = scales.offset[ray] - scales.offset[next];
+            let (before, after) = (self.labels[ray], self.labels[next]);
+            let Some((jump, sign)) = problem.jump_between(before, after) else { continue };
+            let at = |t: f64| in_space(self.on_ray(ray + 1, t));
+            if let Some(field) = &jump.value {
+                let values = along(radius, degree, |t| Some(sign * field.at(&at(t))))?;
+                values.iter().enumerate().for_each(|(power, c)| all[power].values[ray] += c);
+            }
+            if let Some(field) = &jump.flux {
+                let fluxes = along(radius, degree, |t| Some(field.at(&at(t))))?;
+                fluxes.iter().enumerate().for_each(|(power, c)| all[power + 1].fluxes[ray] += radius * c);
+            }
+        }
+        for (k, end) in wedge.ends.iter().flatten().enumerate() {
+            let (ray, sector, face) = if k == 0 { (0, 0, self.faces[0]) } else { (sectors, sectors - 1, self.faces[1]) };
+            let condition = |t: f64| problem.boundary.condition(face, &in_space(self.on_ray(ray, t)));
+            // The angle grows into the domain on the first ray, and out of it on the last.
+            let (out, eta) = (if k == 0 { -1.0 } else { 1.0 }, wedge.sectors[sector].eta);
+            match end {
+                End::Dirichlet => {
+                    let values = along(radius, degree, |t| match condition(t)? {
+                        Condition::Dirichlet(value) => Some(value),
+                        _ => None,
+                    })?;
+                    values.iter().enumerate().for_each(|(power, c)| all[power].ends[k] = *c);
+                    all[0].ends[k] -= scales.offset[sector];
+                }
+                End::Flux => {
+                    let fluxes = along(radius, degree, |t| match condition(t)?.as_flux(eta)? {
+                        (0.0, flux) => Some(flux),
+                        _ => None,
+                    })?;
+                    fluxes.iter().enumerate().for_each(|(power, c)| all[power + 1].ends[k] = out * radius * c);
+                }
+            }
+        }
+        Some(all)
+    }
+}
+
+impl LocalSolution {
+    /// The smallest power at which it is no polynomial in the sectors: that of a function, of a logarithm, or 0 where the value depends
+    /// on the direction; `None` where polynomials do.
+    pub(crate) fn broken_power(&self, exponents: Option<f64>) -> Option<f64> {
+        let size = |factors: &[[f64; 2]]| factors.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = self.forced.iter().map(|f| size(&f.plain)).fold(0.0, f64::max);
+        let threshold = NEGLIGIBLE * largest;
+        let turning = self.value_depends_on_direction();
+        let logarithm = self.forced.iter().find(|f| size(&f.logarithm) > threshold).map(|f| f.power);
+        let least = [turning.then_some(0.0), logarithm, exponents];
+        least.into_iter().flatten().min_by(f64::total_cmp)
+    }
+
+    /// Whether there is no one value at the vertex: two that are prescribed meet there.
+    pub(crate) fn value_depends_on_direction(&self) -> bool {
+        let Some(first) = self.forced.first().filter(|f| f.power == 0.0) else { return false };
+        let [plain, turning] = [0, 1].map(|k| first.plain.iter().fold(0.0_f64, |m, f| m.max(f[k].abs())));
+        turning > NEGLIGIBLE * plain.max(turning)
+    }
+}
+
+/// No data at all.
+fn empty(wedge: &Wedge) -> RayData {
+    let none = vec![0.0; wedge.inner_rays()];
+    RayData { values: none.clone(), fluxes: none, ends: [0.0; 2] }
+}
+
+fn numbers(data: &RayData) -> impl Iterator<Item = f64> + '_ {
+    data.values.iter().chain(&data.fluxes).chain(&data.ends).copied()
+}
+
+fn round(data: &mut RayData, least: f64) {
+    let all = data.values.iter_mut().chain(&mut data.fluxes).chain(&mut data.ends);
+    all.filter(|x| x.abs() <= least).for_each(|x| *x = 0.0);
+}
+
+/// `factor |x|^2`.
+fn square(factor: f64) -> Vec<Monomial> {
+    vec![([2, 0], factor), ([0, 2], factor)]
+}
+
+/// Takes what polynomials in the sectors leave on the rays from the data.
+fn add_sources(wedge: &Wedge, start: f64, sources: &[Vec<Monomial>], data: &mut Vec<RayData>) {
+    let most = sources.iter().flatten().map(|(e, _)| usize::from(e[0] + e[1])).max();
+    if let Some(most) = most.filter(|&most| most >= data.len()) {
+        data.resize(most + 1, empty(wedge));
+    }
+    let sectors = wedge.sectors.len();
+    let mut from = start;
+    for (k, (sector, source)) in wedge.sectors.iter().zip(sources).enumerate() {
+        let to = from + sector.opening;
+        for (after, angle) in [(false, from), (true, to)] {
+            let (sin, cos) = angle.sin_cos();
+            for &([i, j], factor) in source {
+                let (i, j) = (i32::from(i), i32::from(j));
+                let value = factor * cos.powi(i) * sin.powi(j);
+                let slope_x = if i > 0 { f64::from(i) * cos.powi(i - 1) * sin.powi(j) } else { 0.0 };
+                let slope_y = if j > 0 { f64::from(j) * cos.powi(i) * sin.powi(j - 1) } else { 0.0 };
+                let slope = factor * (slope_y * cos - slope_x * sin);
+                let (value, flux) = (sector.scale * value, sector.eta * sector.scale * slope);
+                let data = &mut data[(i + j) as usize];
+                match (wedge.ends, after) {
+                    (Some(ends), false) if k == 0 => {
+                        data.ends[0] -= if ends[0] == End::Dirichlet { value } else { flux };
+                    }
+                    (Some(ends), true) if k + 1 == sectors => {
+                        data.ends[1] -= if ends[1] == End::Dirichlet { value } else { flux };
+                    }
+                    _ => {
+                        let ray = if after { k } else { (k + sectors - 1) % sectors };
+                        // A jump is the later sector less the earlier one, and this sector is the earlier one of the ray after it.
+                        let sign = if after { 1.0 } else { -1.0 };
+                        data.values[ray] += sign * value;
+                        data.fluxes[ray] += sign * flux;
+                    }
+                }
+            }
+        }
+        from = to;
+    }
+}
+
+/// The polynomial of a degree in `t / radius` that has the values of a function at Chebyshev points from 0 to the radius.
+fn along(radius: f64, degree: usize, value: impl Fn(f64) -> Option<f64>) -> Option<Vec<f64>> {
+    let count = degree + 1;
+    let place = |k: usize| {
+        let angle = std::f64::consts::PI * (k as f64 + 0.5) / count as f64;
+        0.5 * (1.0 - angle.cos())
+    };
+    let values: Option<Vec<f64>> =
+        (0..count).map(|k| value(radius * place(k)).filter(|v| v.is_finite())).collect();
+    let values = values?;
+    if values.iter().all(|v| *v == values[0]) {
+        return Some(vec![values[0]]);
+    }
+    let powers = DMatrix::from_fn(count, count, |k, power| place(k).powi(power as i32));
+    let solution = powers.lu().solve(&DVector::from_vec(values))?;
+    Some(solution.iter().copied().collect())
+}
+
+/// A point of the plane in any dimension.
+pub(crate) fn in_space<const D: usize>(x: [f64; 2]) -> [f64; D] {
+    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
+}

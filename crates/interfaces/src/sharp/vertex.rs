@@ -1,0 +1,301 @@
+//! Corner functions in place of polynomials: which fits take them, and what they are there.
+//!
+//! Near a vertex where straight edges of interfaces and boundaries meet, the polynomials of all parts of a stencil give way to one
+//! set of functions `r^lambda Phi(theta)` that meets every condition there exactly, and to what the data add. Only values at nodes are
+//! rows of such a fit. See `docs/corners.md`.
+
+use meshless_neighbors::CellList;
+
+use super::basis::{Basis, Jet};
+use super::params::{Form, SharpParams};
+use super::particular::Particular;
+use super::parts::Row;
+use super::unknowns::Unknowns;
+use crate::corners::{Corner, Local, LocalSolution, Monomial, Obstacle, Scales, in_space, local_problems};
+use crate::{Field, Problem};
+
+/// How far from a vertex fits take its functions: this many spacings for each degree of the polynomials that take over there.
+const ZONE: f64 = 2.0;
+
+/// Part of the clear distance round a vertex up to which fits may take its functions however wide a stencil is: beyond, most of its nodes
+/// are where other things are.
+const SHARE_OF_CLEAR: f64 = 0.5;
+
+/// Nodes within the clear distance for each function.
+const NODES_PER_FUNCTION: f64 = 1.5;
+
+/// The polynomial that stands for a source round a vertex has this many degrees more than those of a fit, up to the highest.
+const SOURCE_DEGREES_BEYOND: usize = 4;
+const HIGHEST_SOURCE_DEGREE: usize = 14;
+
+/// Distance from a vertex, over the clear one, below which a node is there.
+const AT_VERTEX: f64 = 1e-9;
+
+/// Where the part of a sector is looked for, over the clear distance.
+const INSIDE: f64 = 0.25;
+
+/// A vertex with the functions that serve it.
+#[derive(Debug)]
+pub(super) struct Vertex {
+    local: Local,
+    solution: LocalSolution,
+    scales: Scales,
+    /// The polynomial of a source of 1, in every sector.
+    units: Vec<Vec<Monomial>>,
+    /// Part of every sector.
+    parts: Vec<u32>,
+    /// How far from it fits take its functions even where they do not see it.
+    zone: f64,
+    held: bool,
+    /// Two prescribed values meet: a value right there says nothing.
+    ambiguous: bool,
+}
+
+/// All vertices that are served, and what is known of those that are not.
+#[derive(Debug, Default)]
+pub(super) struct Vertices {
+    served: Vec<Vertex>,
+    /// Every vertex whose solution is no polynomial.
+    pub(super) corners: Vec<Corner>,
+}
+
+/// A value with its gradient.
+pub(super) type Valued<const D: usize> = (f64, [f64; D]);
+
+impl Vertices {
+    /// Finds the vertices of a problem and the functions of those that can have them.
+    pub(super) fn find<const D: usize>(
+        problem: &Problem<'_, D>,
+        params: &SharpParams,
+        unknowns: &Unknowns,
+        nodes: &CellList<'_, D>,
+    ) -> Self {
+        if D != 2 {
+            return Self::default();
+        }
+        let degree = params.degree();
+        let mut all = Self::default();
+        let mut source = SourcePolynomials { degree: (degree + SOURCE_DEGREES_BEYOND).min(HIGHEST_SOURCE_DEGREE), made: None };
+        for local in local_problems(problem, degree as f64 + AT_VERTEX) {
+            let (at, exponent) = (local.at.to_vec(), local.broken_exponent());
+            let report = |exponent: f64, obstacle: Option<Obstacle>| Corner { at: at.clone(), exponent, obstacle };
+            match Vertex::new(problem, params, unknowns, nodes, local.clone(), &mut source) {
+                Ok(vertex) => {
+                    if let Some(power) = vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64) {
+                        all.corners.push(report(power, None));
+                        all.served.push(vertex);
+                    }
+                }
+                Err(obstacle) => {
+                    let power = crate::corners::broken_power(problem, &local, params.order);
+                    all.corners.extend(power.map(|power| report(power, Some(obstacle))));
+                }
+            }
+        }
+        all
+    }
+
+    /// The vertex whose functions a fit round a point takes, wherever its nodes are.
+    pub(super) fn near<const D: usize>(&self, x: &[f64; D]) -> Option<usize> {
+        self.nearest(x).filter(|&(k, distance)| distance < self.served[k].zone).map(|(k, _)| k)
+    }
+
+    /// The vertex that a stencil of this radius round a point contains.
+    pub(super) fn within<const D: usize>(&self, x: &[f64; D], radius: f64) -> Option<usize> {
+        self.nearest(x).filter(|&(k, distance)| distance <= radius && distance < self.served[k].local.clear).map(|(k, _)| k)
+    }
+
+    fn nearest<const D: usize>(&self, x: &[f64; D]) -> Option<(usize, f64)> {
+        let distances = self.served.iter().enumerate().map(|(k, vertex)| (k, vertex.distance(x)));
+        distances.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    pub(super) fn get(&self, k: usize) -> &Vertex {
+        &self.served[k]
+    }
+}
+
+/// Polynomials with given Laplacians, made where the first source wants one.
+struct SourcePolynomials {
+    degree: usize,
+    made: Option<Particular<2>>,
+}
+
+impl SourcePolynomials {
+    /// The polynomial whose Laplacian is `response` times a source, in the coordinates from a point over a radius.
+    fn of<const D: usize>(
+        &mut self,
+        source: Option<&Field<D>>,
+        (at, radius): ([f64; 2], f64),
+        response: f64,
+    ) -> Result<Vec<Monomial>, Obstacle> {
+        let Some(field) = source else { return Ok(Vec::new()) };
+        if let Some(f) = field.as_constant() {
+            return Ok(square(0.25 * response * f));
+        }
+        let made = self.made.get_or_insert_with(|| Particular::new(self.degree));
+        let place = |z: &[f64; 2]| in_space([at[0] + radius * z[0], at[1] + radius * z[1]]);
+        let points: Vec<[f64; D]> = made.samples.iter().map(place).collect();
+        let mut values = vec![0.0; points.len()];
+        field.eval(&points, &mut values);
+        if !values.iter().all(|f| f.is_finite()) {
+            return Err(Obstacle::Data);
+        }
+        values.iter_mut().for_each(|f| *f *= response);
+        let mut factors = Vec::new();
+        made.solve(&values, &mut factors);
+        let Basis::Complete { exponents, .. } = &made.basis else { return Err(Obstacle::Data) };
+        Ok(exponents.iter().copied().zip(factors).collect())
+    }
+}
+
+/// `factor |x|^2`.
+fn square(factor: f64) -> Vec<Monomial> {
+    vec![([2, 0], factor), ([0, 2], factor)]
+}
+
+impl Vertex {
+    fn new<const D: usize>(
+        problem: &Problem<'_, D>,
+        params: &SharpParams,
+        unknowns: &Unknowns,
+        nodes: &CellList<'_, D>,
+        local: Local,
+        source: &mut SourcePolynomials,
+    ) -> Result<Self, Obstacle> {
+        if params.unsteady || params.form != Form::Trefftz {
+            return Err(Obstacle::Method);
+        }
+        if let Some(obstacle) = local.obstacle {
+            return Err(obstacle);
+        }
+        let at: [f64; D] = in_space(local.at);
+        let functions = local.exponents.iter().map(|e| e.1).sum::<usize>() + 1;
+        let mut found = Vec::new();
+        nodes.within(&at, local.clear, &mut found);
+        if (found.len() as f64) < NODES_PER_FUNCTION * functions as f64 {
+            return Err(Obstacle::Spacing);
+        }
+        // The part of a sector is that of the node of its region nearest to its middle.
+        let parts: Option<Vec<u32>> = (0..local.labels.len())
+            .map(|k| {
+                let middle: [f64; D] = in_space(local.inside(k, INSIDE * local.clear));
+                let of_label = |j: &&u32| problem.labels[**j as usize] == local.labels[k];
+                let in_sector = |j: &&u32| {
+                    let x = &problem.cloud.points()[**j as usize];
+                    local.place(&[x[0], x[1]], |s| s == k).0 == k
+                };
+                let squared = |j: &u32| {
+                    let x = &problem.cloud.points()[*j as usize];
+                    (0..D).map(|d| (x[d] - middle[d]).powi(2)).sum::<f64>()
+                };
+                let own = found.iter().filter(of_label).filter(in_sector);
+                own.min_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.cmp(b))).map(|&j| unknowns.part[j as usize])
+            })
+            .collect();
+        let parts = parts.ok_or(Obstacle::Spacing)?;
+        let spacing = nodes.nearest_one(&at).map_or(local.clear, |j| problem.cloud.spacing()[j as usize]);
+        let stencil = (params.stencil_nodes(D) as f64 / std::f64::consts::PI).sqrt() * spacing;
+        let widest = (local.clear - stencil).max(SHARE_OF_CLEAR * local.clear);
+        let zone = (ZONE * params.degree() as f64 * spacing).min(widest);
+        let radius = (zone + 2.0 * stencil).min(local.clear);
+        let of_part = |of: &[f64]| parts.iter().map(|&part| of[part as usize]).collect::<Vec<f64>>();
+        let (scale, offset) = (of_part(&unknowns.scale), of_part(&unknowns.offset));
+        let response =
+            |k: usize| -radius * radius / (local.wedge.sectors[k].eta * scale[k]);
+        let sources = (0..parts.len())
+            .map(|k| {
+                let field = problem.materials[local.labels[k] as usize].source.as_ref();
+                source.of(field, (local.at, radius), response(k))
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let units = (0..parts.len()).map(|k| square(0.25 * response(k))).collect();
+        let scales = Scales { scale, offset, radius, sources };
+        let solution = local.solve(problem, &scales, params.degree())?;
+        let (held, ambiguous) = (local.wedge.is_held(), solution.value_depends_on_direction());
+        Ok(Self { local, solution, scales, units, parts, zone, held, ambiguous })
+    }
+
+    /// How far a point is away.
+    pub(super) fn distance<const D: usize>(&self, x: &[f64; D]) -> f64 {
+        (x[0] - self.local.at[0]).hypot(x[1] - self.local.at[1])
+    }
+
+    /// Whether a point is so near that nothing but the rays of the vertex is between.
+    pub(super) fn reaches<const D: usize>(&self, x: &[f64; D]) -> bool {
+        self.distance(x) <= self.local.clear
+    }
+
+    /// Whether a value at a point says something.
+    pub(super) fn is_told_by<const D: usize>(&self, x: &[f64; D]) -> bool {
+        !self.ambiguous || self.distance(x) > AT_VERTEX * self.local.clear
+    }
+
+    /// Whether u is prescribed on a boundary that meets there, so that nothing is left of the constant.
+    pub(super) fn is_held(&self) -> bool {
+        self.held
+    }
+
+    /// Columns of a fit.
+    pub(super) fn columns(&self) -> usize {
+        self.solution.functions.len() + usize::from(!self.held)
+    }
+
+    /// Writes values and gradients of the functions at a point of a part, for distances in units of `reach`; the constant, where there is
+    /// one, is `constant`. Returns what the data and the sources add, and what a source of 1 does.
+    pub(super) fn evaluate<const D: usize>(
+        &self,
+        part: u32,
+        x: &[f64; D],
+        (reach, constant): (f64, f64),
+        jet: &mut Jet<D>,
+    ) -> [Valued<D>; 2] {
+        let (sector, r, z) = self.local.place(&[x[0], x[1]], |k| self.parts[k] == part);
+        let middle = {
+            let [a, b] = self.local.inside(sector, 1.0);
+            (b - self.local.at[1]).atan2(a - self.local.at[0])
+        };
+        let (sin, cos) = (middle + z).sin_cos();
+        let cartesian = |[_, radial, around]: [f64; 3], unit: f64| -> [f64; D] {
+            in_space([(radial * cos - around * sin) / unit, (radial * sin + around * cos) / unit])
+        };
+        jet.values.clear();
+        jet.gradients.clear();
+        if !self.held {
+            jet.values.push(constant);
+            jet.gradients.push([0.0; D]);
+        }
+        for function in &self.solution.functions {
+            let polar = function.at(sector, r / reach, z);
+            jet.values.push(polar[0]);
+            jet.gradients.push(cartesian(polar, reach));
+        }
+        let radius = self.scales.radius;
+        let mut given = [(0.0, [0.0; D]); 2];
+        let forced = self.solution.forced.iter().map(|f| (0, f)).chain([(1, &self.solution.unit)]);
+        for (which, function) in forced {
+            let polar = function.at(sector, r / radius, z);
+            given[which].0 += polar[0];
+            let slope = cartesian(polar, radius);
+            given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
+        }
+        let xi = [r * cos / radius, r * sin / radius];
+        for (which, polynomial) in [&self.scales.sources[sector], &self.units[sector]].into_iter().enumerate() {
+            for &([i, j], factor) in polynomial {
+                let (i, j) = (i32::from(i), i32::from(j));
+                given[which].0 += factor * xi[0].powi(i) * xi[1].powi(j);
+                let slope_x = if i > 0 { f64::from(i) * xi[0].powi(i - 1) * xi[1].powi(j) } else { 0.0 };
+                let slope_y = if j > 0 { f64::from(j) * xi[0].powi(i) * xi[1].powi(j - 1) } else { 0.0 };
+                let slope: [f64; D] = in_space([factor * slope_x / radius, factor * slope_y / radius]);
+                given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
+            }
+        }
+        given
+    }
+}
+
+/// A functional of the polynomial in z of what [`Vertex::evaluate`] returns, for a stencil of this radius.
+pub(super) fn apply<const D: usize>(functional: &Row<D>, (value, gradient): &Valued<D>, radius: f64) -> f64 {
+    let slope: f64 = (0..D).map(|k| functional.gradient[k] * gradient[k]).sum();
+    functional.value * value + radius * slope
+}
