@@ -6,6 +6,7 @@
 pub mod fietier;
 pub mod head;
 pub mod kraus;
+pub mod natural;
 pub mod order;
 pub mod particle_difference;
 pub mod sharp;

@@ -11,6 +11,7 @@ mod hard;
 mod html;
 mod jobs;
 mod ladder;
+mod natural;
 mod options;
 mod order;
 mod particle_difference;

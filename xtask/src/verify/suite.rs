@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::study::Study;
-use super::{cost, dcpse, freespace, gfdm, hard, particle_difference, sharp, solvers};
+use super::{cost, dcpse, freespace, gfdm, hard, natural, particle_difference, sharp, solvers};
 
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
@@ -14,7 +14,7 @@ pub(crate) struct Suite {
     run: fn(&Options) -> Study,
 }
 
-static SUITES: [Suite; 8] = [
+static SUITES: [Suite; 9] = [
     Suite { name: "gfdm", about: gfdm::ABOUT, cases: &gfdm::CASES, run: gfdm::run },
     Suite {
         name: "particle-difference",
@@ -26,6 +26,7 @@ static SUITES: [Suite; 8] = [
     Suite { name: "freespace", about: freespace::ABOUT, cases: &freespace::CASES, run: freespace::run },
     Suite { name: "sharp", about: sharp::ABOUT, cases: &sharp::CASES, run: sharp::run },
     Suite { name: "hard", about: hard::ABOUT, cases: &hard::CASES, run: hard::run },
+    Suite { name: "natural", about: natural::ABOUT, cases: &natural::CASES, run: natural::run },
     Suite { name: "solvers", about: solvers::ABOUT, cases: &solvers::CASES, run: solvers::run },
     Suite { name: "cost", about: cost::ABOUT, cases: &cost::CASES, run: cost::run },
 ];
