@@ -23,6 +23,12 @@ const ZONE: f64 = 2.0;
 /// are where other things are.
 const SHARE_OF_CLEAR: f64 = 0.5;
 
+/// Exponents from here on leave so little that polynomials without a balance do.
+const SEVERE: f64 = 2.0;
+
+/// Where a zone is narrower than it should be, what lies round it is balanced up to this many times as far as it should reach.
+const BEYOND: f64 = 2.0;
+
 /// Nodes within the clear distance for each function.
 const NODES_PER_FUNCTION: f64 = 1.5;
 
@@ -63,6 +69,8 @@ pub(super) struct Vertex {
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     served: Vec<Vertex>,
+    /// Places and distances within which polynomials have to do although the solution is singular.
+    unserved: Vec<([f64; 2], f64)>,
     /// Every vertex whose solution is no polynomial.
     pub(super) corners: Vec<Corner>,
 }
@@ -96,22 +104,36 @@ impl Vertices {
                 clear,
                 obstacle,
             };
+            let spacing = nodes.nearest_one(&in_space(local.at)).map(|j| problem.cloud.spacing()[j as usize]);
+            let wanted = ZONE * degree as f64 * spacing.unwrap_or(0.0);
             match Vertex::new(problem, params, unknowns, nodes, local.clone(), &mut source) {
                 Ok(vertex) => {
                     if let Some(power) =
                         vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64)
                     {
+                        if vertex.zone < wanted && power < SEVERE {
+                            all.unserved.push((local.at, BEYOND * wanted));
+                        }
                         all.corners.push(report(power, None));
                         all.served.push(vertex);
                     }
                 }
                 Err(obstacle) => {
                     let power = crate::corners::broken_power(&data, &local, params.order);
+                    if power.is_some_and(|power| power < SEVERE) {
+                        all.unserved.push((local.at, wanted));
+                    }
                     all.corners.extend(power.map(|power| report(power, Some(obstacle))));
                 }
             }
         }
         all
+    }
+
+    /// Whether polynomials round a point are those of a fit near a singular solution that no functions serve: what they leave is to be
+    /// balanced at least.
+    pub(super) fn leaves_much<const D: usize>(&self, x: &[f64; D]) -> bool {
+        self.unserved.iter().any(|(at, distance)| (x[0] - at[0]).hypot(x[1] - at[1]) < *distance)
     }
 
     /// The vertex whose functions a fit round a point takes, wherever its nodes are.

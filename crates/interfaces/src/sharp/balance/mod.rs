@@ -27,7 +27,11 @@ pub(super) fn replace<const D: usize>(maker: &Maker<'_, D>, rows: &mut [Row]) ->
     for row in rows.iter() {
         wanted[row.node] = match maker.params.conservation {
             Conservation::None => false,
-            Conservation::Crossing => row.crosses,
+            // Functions of a vertex are exact there, and fluxes beside it singular.
+            Conservation::Crossing => {
+                let x = &maker.problem.cloud.points()[row.node];
+                !row.at_vertex && (row.crosses || maker.vertices.leaves_much(x))
+            }
             Conservation::All => true,
         };
     }
