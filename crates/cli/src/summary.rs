@@ -1,12 +1,13 @@
 //! A report in lines of text, as `meshless solve` prints it.
 
-use meshless::report::{BalanceReport, FluxReport, Probe, Report};
+use meshless::report::{BalanceReport, CornerReport, FluxReport, Probe, Report};
 
 pub(crate) fn print(report: &Report) {
     say!("{}", report.title);
     let raised = report.estimate.raised_by.is_some();
     // What is worse than all that follows comes first.
     report.balance.iter().filter(|_| raised).for_each(|b| balance(b, report));
+    corners(&report.corners);
     system(report);
     field(report);
     solution(report);
@@ -39,6 +40,23 @@ fn balance(balance: &BalanceReport, report: &Report) {
         if estimate.regions.get(name).is_some_and(|known| *known == region.relative) {
             say!("  {name:<10} {:.1e} left over, {:.1e} of its parts", region.left_over, region.relative);
         }
+    }
+}
+
+/// Where the solution is singular: the worst corner that functions serve, and the worst that none do.
+fn corners(corners: &[CornerReport]) {
+    for served in [false, true] {
+        let all: Vec<&CornerReport> = corners.iter().filter(|corner| corner.served == served).collect();
+        let Some(worst) = all.iter().min_by(|a, b| a.exponent.total_cmp(&b.exponent)) else { continue };
+        let more = match all.len() - 1 {
+            0 => String::new(),
+            others => format!(" (and at {others} more)"),
+        };
+        let why = match &worst.why_not {
+            None => ": functions of their own there".to_owned(),
+            Some(why) => format!(": not served, {why}; a cloud that is graded towards it helps"),
+        };
+        say!("corner      u ~ r^{:.3} at {:?}{more}{why}", worst.exponent, worst.at);
     }
 }
 
