@@ -24,7 +24,7 @@ fn carries(text: &str, exact: f64, bounds: &[(MethodName, f64)]) {
         for error in [into, out, between] {
             assert!(error.abs() < bound, "{method:?}: {error:.2e}, {found:?}");
         }
-        assert!(found.left_over.is_some_and(|left| left < 2.0 * bound), "{method:?}: {found:?}");
+        assert!(found.left_over < 2.0 * bound, "{method:?}: {found:?}");
     }
 }
 
@@ -141,7 +141,7 @@ fn prescribed_fluxes_are_counted_as_they_are() {
                 [[boundaries]]\nface = \"right\"\nrobin = { a = 6, b = 1, g = 0 }\n\
                 [[boundaries]]\nface = \"all\"\nneumann = 0\n";
     let found = fluxes(text, MethodName::Auto).expect("it is solved");
-    assert!((found.boundaries[0].flux - 1.0).abs() < 1e-3 && found.left_over.is_none(), "{found:?}");
+    assert!((found.boundaries[0].flux - 1.0).abs() < 1e-9 && found.left_over < 0.02, "{found:?}");
     // What enters on the left and arises inside leaves on the right, as far as stencils of second order know.
     assert!((found.boundaries[1].flux + 9.0).abs() < 0.2, "{found:?}");
     let open = "title = \"Open\"\ndimension = 2\n[domain]\nfree_space = { min = [-1, -1], max = [1, 1] }\n\

@@ -1,16 +1,63 @@
 //! A report in lines of text, as `meshless solve` prints it.
 
-use meshless::report::{FluxReport, Probe, Report};
+use meshless::report::{BalanceReport, CornerReport, FluxReport, Probe, Report};
 
 pub(crate) fn print(report: &Report) {
     say!("{}", report.title);
+    let raised = report.estimate.raised_by.is_some();
+    // What is worse than all that follows comes first.
+    report.balance.iter().filter(|_| raised).for_each(|b| balance(b, report));
+    corners(&report.corners);
     system(report);
     field(report);
     solution(report);
     errors(report);
+    report.balance.iter().filter(|_| !raised).for_each(|b| balance(b, report));
     seconds(report);
     report.probes.iter().for_each(|p| probe(p, has_u(report)));
     report.fluxes.iter().for_each(fluxes);
+}
+
+/// What enters and arises, and what of it is left over; a region by itself where that is what raised the estimate.
+fn balance(balance: &BalanceReport, report: &Report) {
+    let enters: f64 = balance.into.iter().map(|part| part.flux).sum();
+    let stored = balance.stored.map_or(String::new(), |stored| format!(", stored {stored:.6e}"));
+    let (left, relative) = (balance.left_over, balance.relative);
+    say!(
+        "balance     enters {enters:.6e}, sources {:.6e}{stored}: {left:.1e} left over, {relative:.1e} of the parts",
+        balance.sources.total
+    );
+    let estimate = &report.estimate;
+    if estimate.raised_by.is_none() {
+        return;
+    }
+    if let Some(compared) = estimate.compared {
+        say!(
+            "  the comparison of two solutions says {compared:.1e}: they make the same mistake, the error is larger"
+        );
+    }
+    for (name, region) in &balance.regions {
+        if estimate.regions.get(name).is_some_and(|known| *known == region.relative) {
+            say!("  {name:<10} {:.1e} left over, {:.1e} of its parts", region.left_over, region.relative);
+        }
+    }
+}
+
+/// Where the solution is singular: the worst corner that functions serve, and the worst that none do.
+fn corners(corners: &[CornerReport]) {
+    for served in [false, true] {
+        let all: Vec<&CornerReport> = corners.iter().filter(|corner| corner.served == served).collect();
+        let Some(worst) = all.iter().min_by(|a, b| a.exponent.total_cmp(&b.exponent)) else { continue };
+        let more = match all.len() - 1 {
+            0 => String::new(),
+            others => format!(" (and at {others} more)"),
+        };
+        let why = match &worst.why_not {
+            None => ": functions of their own there".to_owned(),
+            Some(why) => format!(": not served, {why}; a cloud that is graded towards it helps"),
+        };
+        say!("corner      u ~ r^{:.3} at {:?}{more}{why}", worst.exponent, worst.at);
+    }
 }
 
 /// What enters through the parts of the boundary, and passes interfaces.
@@ -20,9 +67,6 @@ fn fluxes(fluxes: &FluxReport) {
     }
     for seam in &fluxes.interfaces {
         say!("flux        {:.6e} enters \"{}\" from \"{}\"", seam.flux, seam.between[0], seam.between[1]);
-    }
-    if let Some(left_over) = fluxes.left_over {
-        say!("flux        {left_over:.1e} of what enters is left over");
     }
 }
 

@@ -8,6 +8,7 @@ use crate::aabb::Aabb;
 use crate::shape::{Ball, Cylinder, Shape};
 use crate::surface::TriangleSurface;
 use crate::vector::{axis_vector, axpy, dot, norm, normalized, scale, sub};
+pub(crate) use march::chords;
 
 /// Pieces round a circle at least, whatever its size.
 const ROUND: f64 = 64.0;
@@ -28,11 +29,12 @@ impl<const D: usize> Shape<D> {
     /// size: also what lies within other parts of the shape. Areas are exact for planes, polygons and triangles, of fourth
     /// order in the size for curved surfaces.
     pub fn elements(&self, bounds: &Aabb<D>, size: f64) -> Vec<Element<D>> {
-        self.leaves().into_iter().flat_map(|(leaf, _)| of_primitive(leaf, bounds, size)).collect()
+        self.leaves().into_iter().flat_map(|(leaf, _)| small_pieces(leaf, bounds, size)).collect()
     }
 }
 
-fn of_primitive<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>, size: f64) -> Vec<Element<D>> {
+/// The surface of one primitive in pieces of about a size.
+pub(crate) fn small_pieces<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>, size: f64) -> Vec<Element<D>> {
     match shape {
         Shape::Box(b) => (0..2 * D).flat_map(|k| side_elements(b, k / 2, k % 2 == 1, size)).collect(),
         Shape::Ball(ball) => of_ball(ball, size),
@@ -95,7 +97,7 @@ fn middles(from: f64, to: f64, size: f64) -> Vec<(f64, f64)> {
 }
 
 /// Unit vectors across a direction; zero beyond what there are.
-fn tangents<const D: usize>(n: &[f64; D]) -> [[f64; D]; 2] {
+pub(crate) fn tangents<const D: usize>(n: &[f64; D]) -> [[f64; D]; 2] {
     let mut found = [[0.0; D]; 2];
     let mut axes: Vec<usize> = (0..D).collect();
     axes.sort_by(|&a, &b| n[a].abs().total_cmp(&n[b].abs()));

@@ -28,6 +28,17 @@ pub enum GeometryError {
         /// Its value there.
         spacing: f64,
     },
+    /// A spacing that falls to zero somewhere, so that a cloud would have no end.
+    #[error(
+        "the spacing falls to zero at about {at:?}, where it is {spacing:.1e}; \
+         add what it is to be at least, or use `max`"
+    )]
+    VanishingSpacing {
+        /// About where.
+        at: Vec<f64>,
+        /// Its value there.
+        spacing: f64,
+    },
     /// The spacing is so large that no node fits inside the domain.
     #[error("a spacing of {spacing} leaves no interior node in a domain of size {size}; use a smaller one")]
     SpacingTooLarge {

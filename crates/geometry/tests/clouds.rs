@@ -239,3 +239,59 @@ fn reordered_clouds_keep_their_boundary() {
     assert_eq!(reversed.permuted(&order).unwrap(), cloud);
     assert!(cloud.permuted(&order[1..]).is_err());
 }
+
+/// Spacings that fall by orders of magnitude towards a point: the counts are those of the integral of `1/h^D`, by hand.
+#[test]
+fn spacings_that_fall_to_a_point_are_counted() {
+    let square = Domain::boxed([-1.0; 2], [1.0; 2]).unwrap();
+    // Over the disc of radius 1 the integral of 1 / (e + 0.1 r)^2 is 200 pi (ln(1 + 0.1/e) - 1 + e / (e + 0.1)); the corners add
+    // 100 (4 int_0^(pi/4) 2 ln(1 / cos t) dt) to it, for small e.
+    let corners = 100.0 * 8.0 * 0.086_413_724_851;
+    for (least, at) in [(1e-3, [0.0, 0.0]), (1e-5, [0.0, 0.0]), (1e-6, [0.0, 0.0]), (1e-6, [0.31, -0.17])] {
+        let spacing = Spacing::Graded(Arc::new(move |x: &[f64; 2]| {
+            least + 0.1 * ((x[0] - at[0]).powi(2) + (x[1] - at[1]).powi(2)).sqrt()
+        }));
+        let counted = estimate_nodes(&square, &spacing).unwrap();
+        let disc = 200.0 * std::f64::consts::PI * ((1.0 + 0.1 / least).ln() - 1.0 + least / (least + 0.1));
+        if at == [0.0, 0.0] {
+            // And half a layer on the boundary: 8 int_0^1 dt / (2 * 0.1 sqrt(1 + t^2)).
+            let layer = 40.0 * 1.0_f64.asinh();
+            let expected = disc + corners + layer;
+            assert!((counted / expected - 1.0).abs() < 0.01, "{least}: {counted} for {expected}");
+        } else {
+            assert!((counted / disc - 1.0).abs() < 0.1, "{counted} for about {disc}");
+        }
+        let params = CloudParams { spacing, layout: Layout::Irregular, seed: 1, max_nodes: 200_000 };
+        let made = generate(&square, &params).unwrap().len() as f64;
+        assert!((counted / made - 1.0).abs() < 0.3, "{least} at {at:?}: {counted} for {made}");
+    }
+    let cube = Domain::boxed([-1.0; 3], [1.0; 3]).unwrap();
+    let spacing = Spacing::Graded(Arc::new(|x: &[f64; 3]| {
+        1e-4 + 0.25 * (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]).sqrt()
+    }));
+    let counted = estimate_nodes(&cube, &spacing).unwrap();
+    let params = CloudParams { spacing, layout: Layout::Irregular, seed: 1, max_nodes: 200_000 };
+    let made = generate(&cube, &params).unwrap().len() as f64;
+    assert!((counted / made - 1.0).abs() < 0.3, "{counted} for {made}");
+}
+
+#[test]
+fn spacings_that_fall_to_zero_are_refused_with_the_place() {
+    let disc = Domain::from_shape(Shape::ball([0.0; 2], 1.0).unwrap(), None).unwrap();
+    let square = Domain::boxed([-1.0; 2], [1.0; 2]).unwrap();
+    type Case<'a> = (&'a Domain<2>, fn(&[f64; 2]) -> f64, [f64; 2]);
+    let cases: [Case<'_>; 3] = [
+        (&disc, |x| 0.1 + 0.1 * x[0], [-1.0, 0.0]),
+        (&square, |x| 0.1 * (x[0] - 0.3).hypot(x[1] + 0.2), [0.3, -0.2]),
+        (&square, |x| 0.1 * (x[0] - 1.0).hypot(x[1] + 0.2), [1.0, -0.2]),
+    ];
+    for (domain, spacing, place) in cases {
+        let spacing = Spacing::Graded(Arc::new(spacing));
+        let Err(GeometryError::VanishingSpacing { at, spacing: least }) = estimate_nodes(domain, &spacing)
+        else {
+            panic!("a spacing of zero at {place:?} was accepted")
+        };
+        assert!((at[0] - place[0]).hypot(at[1] - place[1]) < 1e-5, "{at:?} for {place:?}");
+        assert!(least < 1e-11);
+    }
+}

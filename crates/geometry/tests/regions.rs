@@ -1,8 +1,8 @@
 //! Labels, interfaces and the region graph in known configurations.
 
 use meshless_geometry::{
-    Cloud, CloudParams, Domain, FaceId, Layout, ProjectionError, RegionGraph, RegionMap, Shape, Spacing,
-    generate,
+    Aabb, Cloud, CloudParams, Domain, FaceId, Layout, ProjectionError, RegionGraph, RegionMap, Shape,
+    Spacing, generate,
 };
 
 fn square_grid() -> (Domain<2>, Cloud<2>) {
@@ -132,4 +132,41 @@ fn inconsistent_input_is_refused() {
     let labels = vec![0; cloud.len()];
     assert!(RegionGraph::new(&cloud, &labels[1..], &[]).is_err());
     assert!(RegionGraph::new(&cloud, &labels, &[(0, cloud.len() as u32)]).is_err());
+}
+
+#[test]
+fn faces_on_the_plane_of_a_half_space_belong_to_what_is_behind_them() {
+    let boxed = |min, max| Shape::Box(Aabb::new(min, max).unwrap());
+    let step = Shape::union(vec![boxed([0.0, 0.0], [2.0, 1.0]), boxed([0.0, 0.5], [0.6, 1.4])]).unwrap();
+    let domain = Domain::from_shape(step, None).unwrap();
+    let above: Shape<2> = Shape::half_space([0.0, 1.0], [0.0, -1.0]).unwrap();
+    let map = RegionMap::new(vec![Some(above), None]).unwrap();
+    let params = CloudParams {
+        spacing: Spacing::Uniform(0.1),
+        layout: Layout::Irregular,
+        seed: 1,
+        max_nodes: 100_000,
+    };
+    let cloud = generate(&domain, &params).unwrap();
+    let labels = map.labels_within(&domain, &cloud);
+    let mut on_plane = 0;
+    for (i, x) in cloud.points().iter().enumerate() {
+        let beside = x[0] > 0.6 + 1e-9;
+        on_plane += usize::from(beside && (x[1] - 1.0).abs() < 1e-12);
+        assert_eq!(labels[i], u16::from(beside || x[1] < 1.0 - 1e-9), "{x:?}");
+    }
+    assert!(on_plane > 10);
+}
+
+#[test]
+fn boxes_that_begin_at_the_boundary_have_an_interface_for_all_nodes_within_reach() {
+    let domain = Domain::boxed([-1.0; 2], [1.0; 2]).unwrap();
+    let inner = Shape::Box(Aabb::new([-1.0, -0.4], [0.0, 0.4]).unwrap());
+    let map = RegionMap::new(vec![Some(inner), None]).unwrap();
+    // Nearer to the boundary than to the interface, even from half the reach away.
+    for y in [0.15, 0.2, 0.25, 0.3, 0.39, 0.45] {
+        let foot = map.project_within(&domain, 0, 1, &[-1.0, y], 0.3).unwrap();
+        assert!((foot.point[1] - 0.4).abs() < 1e-12 && foot.normal == [0.0, 1.0], "{y}: {foot:?}");
+        assert!((foot.distance - (y - 0.4)).abs() < 1e-12);
+    }
 }

@@ -70,7 +70,7 @@ mod system;
 pub mod thin_layers;
 
 pub use adjacency::adjacent_pairs;
-pub use corners::{Corner, Obstacle, corners};
+pub use corners::{Corner, CornerData, Obstacle, corners};
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
 pub use error::{MethodError, RegionName};
 pub use field::{Field, ScalarField};

@@ -2,7 +2,7 @@
 
 use meshless_sparse::{DifferenceMatrix, Split};
 
-use crate::{GradientRow, MethodError, Problem, Sample, SystemSolution, gradient};
+use crate::{Corner, GradientRow, MethodError, Problem, Sample, SystemSolution, gradient};
 
 /// A meshless discretisation of an elliptic interface problem.
 pub trait Method<const D: usize>: Sync {
@@ -66,6 +66,9 @@ pub struct Discretization {
     /// The gradient at every node, where the method has kept it from what its rows are made of; see
     /// [`Discretization::gradient`].
     pub gradients: Option<Vec<GradientRow>>,
+    /// The vertices at which the solution is no polynomial, and which of them the method has functions for; `None` for a method that
+    /// does not look for them.
+    pub corners: Option<Vec<Corner>>,
 }
 
 impl Discretization {
@@ -77,7 +80,7 @@ impl Discretization {
         counts: Counts,
         stencil_seconds: f64,
     ) -> Self {
-        let (constants, mass, interface_points, gradients) = (None, None, Vec::new(), None);
+        let (constants, mass, interface_points, gradients, corners) = (None, None, Vec::new(), None, None);
         Self {
             rows,
             rhs,
@@ -89,6 +92,7 @@ impl Discretization {
             stencil_seconds,
             interface_points,
             gradients,
+            corners,
         }
     }
 
@@ -124,7 +128,7 @@ pub struct InterfacePoint {
 /// weigh the sides of an interface against each other must know the scales before they make a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplitRows {
-    /// The change of unknowns over all nodes; prescribed nodes have scale 1 and no constant.
+    /// The change of unknowns over all nodes; prescribed nodes have no constant.
     pub split: Split,
     /// Coefficients of every `C_K`: row, value.
     pub columns: Vec<Vec<(u32, f64)>>,

@@ -176,14 +176,20 @@ impl<const D: usize> Problem<'_, D> {
 
     /// Dirichlet values: `Some(value)` at the nodes where u is prescribed.
     ///
-    /// Where faces meet and several of them prescribe u, the value of the first face in the domain's order counts.
+    /// Where faces meet that prescribe different values, u has every value in between at the one point, and the node gets their mean: it
+    /// is that on the bisector, of which the values round a node see most. Measured on half a square with 20 above and 0 beside it, order 4,
+    /// the mean leaves a 15th to a 30th of the error of either value, and an error that falls with the spacing by itself.
     pub fn dirichlet(&self) -> Vec<Option<f64>> {
         let mut known = vec![None; self.cloud.len()];
         for (node, conditions) in self.cloud.boundary().iter().zip(self.conditions) {
-            known[node.node as usize] = conditions.iter().find_map(|c| match c {
+            let mut values = conditions.iter().filter_map(|c| match c {
                 Condition::Dirichlet(value) => Some(*value),
                 _ => None,
             });
+            let Some(first) = values.next() else { continue };
+            // As a difference from the first, so that equal values stay what they are.
+            let (sum, count) = values.fold((0.0, 1.0), |(sum, count), v| (sum + (v - first), count + 1.0));
+            known[node.node as usize] = Some(first + sum / count);
         }
         known
     }

@@ -21,6 +21,7 @@ pub struct Sampler<'a, const D: usize> {
     problem: &'a Problem<'a, D>,
     u: &'a [f64],
     index: CellList<'a, D>,
+    degree: usize,
     fits: [LocalFit<D>; 2],
 }
 
@@ -49,10 +50,22 @@ pub struct Sample<const D: usize> {
 impl<'a, const D: usize> Sampler<'a, D> {
     /// Prepares to evaluate the field `u`, one value a node.
     pub fn new(problem: &'a Problem<'a, D>, u: &'a [f64]) -> Result<Self, NeighborError> {
+        Self::of_degree(problem, u, DEGREE)
+    }
+
+    /// The same by fits of another degree than two.
+    ///
+    /// # Errors
+    /// Those of [`Sampler::new`].
+    pub fn of_degree(
+        problem: &'a Problem<'a, D>,
+        u: &'a [f64],
+        degree: usize,
+    ) -> Result<Self, NeighborError> {
         let reach = problem.supports.radius.iter().fold(0.0_f64, |a, &b| a.max(b));
         let index = CellList::new(problem.cloud.points(), reach)?;
-        let fits = [DEGREE, 1].map(|degree| LocalFit::new(FitParams { degree, ..FitParams::default() }));
-        Ok(Self { problem, u, index, fits })
+        let fits = [degree, 1].map(|degree| LocalFit::new(FitParams { degree, ..FitParams::default() }));
+        Ok(Self { problem, u, index, degree, fits })
     }
 
     /// Memory for one thread.
@@ -72,7 +85,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     pub fn at(&self, x: &[f64; D], scratch: &mut SampleScratch<D>) -> Option<Sample<D>> {
         let nearest = self.index.nearest_one(x)? as usize;
         let region = self.problem.regions.label(x, self.problem.cloud.spacing()[nearest]);
-        let monomials = (1..=D).fold(1.0, |count, k| count * (DEGREE + k) as f64 / k as f64);
+        let monomials = (1..=D).fold(1.0, |count, k| count * (self.degree + k) as f64 / k as f64);
         let wanted = (NODES_PER_MONOMIAL * monomials).ceil() as usize;
         let mut radius = self.problem.supports.radius[nearest];
         for _ in 0..MAX_SEARCHES {

@@ -29,6 +29,10 @@ pub struct Report {
     /// Where stiff regions touch each other or a wall in a point; empty where none do.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<ContactReport>,
+    /// The vertices at which the solution has a power of the distance below the order that is no polynomial, and in space edges; empty
+    /// where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub corners: Vec<CornerReport>,
     /// Largest diffusivity of a node over the smallest.
     pub contrast: f64,
     /// What the scene calls for.
@@ -40,6 +44,9 @@ pub struct Report {
     pub errors: Option<Errors>,
     /// Errors estimated without it.
     pub estimate: Estimate,
+    /// What enters, arises, is stored, and is left over; absent in free space, which has no boundary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub balance: Option<BalanceReport>,
     /// How the tolerance was reached, where the scene has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracyReport>,
@@ -75,9 +82,56 @@ pub struct FluxReport {
     pub boundaries: Vec<BoundaryFlux>,
     /// Through every interface of two regions.
     pub interfaces: Vec<InterfaceFlux>,
-    /// What enters less what leaves, over half of the sum of both; only in steady scenes without sources: about the relative error.
+    /// The relative part of the [balance](BalanceReport) that is left over: about the relative error of the fluxes.
+    pub left_over: f64,
+}
+
+/// What enters through the boundary and arises inside, less what is stored: nothing is left over of an exact solution.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct BalanceReport {
+    /// What enters through the part of the boundary of every condition, in the order of the scene.
+    #[serde(rename = "in")]
+    pub into: Vec<BoundaryFlux>,
+    /// What arises inside.
+    pub sources: SourceReport,
+    /// The rate of what is stored at the end, in scenes with time: the integral of du/dt.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub left_over: Option<f64>,
+    pub stored: Option<f64>,
+    /// What enters and arises, less what is stored.
+    pub left_over: f64,
+    /// The size of that over the sum of the sizes of the parts, the integrals of the flux's size among them.
+    pub relative: f64,
+    /// The same for each region by itself, by name.
+    pub regions: BTreeMap<String, RegionBalance>,
+}
+
+/// What arises inside.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct SourceReport {
+    /// All of it.
+    pub total: f64,
+    /// Integrals of the source over the regions, by name.
+    pub regions: BTreeMap<String, f64>,
+    /// What prescribed jumps of the flux on interfaces make.
+    pub flux_jumps: f64,
+}
+
+/// The balance of a region.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct RegionBalance {
+    /// What enters through the boundary.
+    pub boundaries: f64,
+    /// What enters through interfaces.
+    pub interfaces: f64,
+    /// What arises inside.
+    pub sources: f64,
+    /// The rate of what is stored, in scenes with time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stored: Option<f64>,
+    /// What enters and arises, less what is stored.
+    pub left_over: f64,
+    /// The size of that over the sum of the sizes of the parts.
+    pub relative: f64,
 }
 
 /// What enters through a part of the boundary.
@@ -129,6 +183,20 @@ pub struct ContactReport {
     pub between: Vec<String>,
     /// Name of the region in the gap.
     pub gap: String,
+}
+
+/// A corner of an interface or of the boundary, or a place where conditions change, at which `u ~ r^exponent`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct CornerReport {
+    /// Where; a point of it, of an edge in space.
+    pub at: Vec<f64>,
+    /// The smallest power of the distance that the solution has there and polynomials have not; 0 where two prescribed values meet.
+    pub exponent: f64,
+    /// Whether the method has functions with that power there.
+    pub served: bool,
+    /// Why it has not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_not: Option<String>,
 }
 
 /// The time steps of an unsteady scene.
@@ -185,6 +253,12 @@ pub struct Estimate {
     /// Why there is no estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
+    /// What says that the error is larger than the comparison does, where something does: `balance`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raised_by: Option<String>,
+    /// What the comparison said of the whole, where that was raised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compared: Option<f64>,
 }
 
 /// The clouds that were tried for a tolerance; the report is about the last one, and its `seconds.total` about all.
@@ -205,6 +279,9 @@ pub struct Rung {
     pub unknowns: usize,
     /// Estimated relative L2 error.
     pub estimate: Option<f64>,
+    /// What raised it, where something did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raised_by: Option<String>,
     /// Why it could not be solved on, or has no estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
@@ -289,6 +366,8 @@ pub struct Seconds {
     pub post: f64,
     /// The error estimate.
     pub estimate: f64,
+    /// The balance, with what it says of the estimate.
+    pub balance: f64,
     /// All of it.
     pub total: f64,
 }

@@ -13,8 +13,37 @@ type Corner<const D: usize> = ([f64; D], f64);
 
 /// What of the surface is within the box.
 pub(super) fn elements<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>, size: f64) -> Vec<Element<D>> {
+    let mut found = Vec::new();
+    let size = least_size(bounds, size);
+    for_each_simplex(shape, bounds, size, &mut |simplex| cut(shape, simplex, size, &mut found));
+    found
+}
+
+/// Chords of what of a curve is within the box, with their ends on it.
+pub(crate) fn chords<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>, size: f64) -> Vec<[[f64; D]; 2]> {
+    let mut found = Vec::new();
+    let size = least_size(bounds, size);
+    for_each_simplex(shape, bounds, size, &mut |simplex| {
+        if let [a, b] = crossings(shape, simplex, size)[..] {
+            found.push([a, b]);
+        }
+    });
+    found
+}
+
+/// The size of the cells of a grid that is not too large.
+fn least_size<const D: usize>(bounds: &Aabb<D>, size: f64) -> f64 {
+    size.max((bounds.measure() / MOST).powf(1.0 / D as f64))
+}
+
+/// The simplices of a grid that the surface may pass.
+fn for_each_simplex<const D: usize>(
+    shape: &Shape<D>,
+    bounds: &Aabb<D>,
+    size: f64,
+    act: &mut dyn FnMut(&[Corner<D>]),
+) {
     let lengths = bounds.lengths();
-    let size = size.max((bounds.measure() / MOST).powf(1.0 / D as f64));
     let cells: [usize; D] = std::array::from_fn(|k| (lengths[k] / size).ceil().max(1.0) as usize);
     let at = |place: &[usize; D]| -> [f64; D] {
         std::array::from_fn(|k| bounds.min[k] + lengths[k] * place[k] as f64 / cells[k] as f64)
@@ -23,7 +52,6 @@ pub(super) fn elements<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>, size:
     let levels: Vec<f64> = places(points).map(|place| shape.level(&at(&place))).collect();
     let level = |place: &[usize; D]| levels[(0..D).rev().fold(0, |index, k| index * points[k] + place[k])];
     let orders = permutations::<D>();
-    let mut found = Vec::new();
     for place in places(cells) {
         let corners =
             (0..1 << D).map(|bits: usize| level(&std::array::from_fn(|k| place[k] + (bits >> k & 1))) > 0.0);
@@ -38,10 +66,9 @@ pub(super) fn elements<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>, size:
                 path[axis] += 1;
                 simplex.push((at(&path), level(&path)));
             }
-            cut(shape, &simplex, size, &mut found);
+            act(&simplex);
         }
     }
-    found
 }
 
 /// All places of a grid, the first axis fastest.
@@ -64,19 +91,25 @@ fn permutations<const D: usize>() -> Vec<Vec<usize>> {
     })
 }
 
-/// The part of the surface in a simplex.
-fn cut<const D: usize>(shape: &Shape<D>, simplex: &[Corner<D>], size: f64, found: &mut Vec<Element<D>>) {
+/// Where the surface crosses the edges of a simplex.
+fn crossings<const D: usize>(shape: &Shape<D>, simplex: &[Corner<D>], size: f64) -> Vec<[f64; D]> {
     let (inside, outside): (Vec<_>, Vec<_>) = simplex.iter().partition(|corner| corner.1 <= 0.0);
-    let onto = |x: &[f64; D]| shape.project(x, size).map_or(*x, |p| p.point);
     let crossing = |a: &Corner<D>, b: &Corner<D>| {
         let t = a.1 / (a.1 - b.1);
-        onto(&axpy(&a.0, if t.is_finite() { t } else { 0.5 }, &sub(&b.0, &a.0)))
+        onto(shape, &axpy(&a.0, if t.is_finite() { t } else { 0.5 }, &sub(&b.0, &a.0)), size)
     };
-    let crossings: Vec<[f64; D]> = inside
-        .iter()
-        .flat_map(|a| outside.iter().map(move |b| (a, b)))
-        .map(|(a, b)| crossing(a, b))
-        .collect();
+    inside.iter().flat_map(|a| outside.iter().map(move |b| crossing(a, b))).collect()
+}
+
+/// The nearest point of the surface.
+fn onto<const D: usize>(shape: &Shape<D>, x: &[f64; D], size: f64) -> [f64; D] {
+    shape.project(x, size).map_or(*x, |p| p.point)
+}
+
+/// The part of the surface in a simplex.
+fn cut<const D: usize>(shape: &Shape<D>, simplex: &[Corner<D>], size: f64, found: &mut Vec<Element<D>>) {
+    let crossings = crossings(shape, simplex, size);
+    let onto = |x: &[f64; D]| onto(shape, x, size);
     let mut keep = |at: [f64; D], area: f64| {
         if let (true, Some(normal)) = (area > 0.0, normalized(&shape.gradient(&at))) {
             found.push(Element { at, normal, area });

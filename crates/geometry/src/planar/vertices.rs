@@ -59,8 +59,10 @@ impl PlanarPieces {
             }
             let at = ends[first].at;
             let near = order[rank..].iter().take_while(|&&k| ends[k].at[0] - at[0] <= 4.0 * self.tolerance);
-            let here: Vec<usize> =
-                near.copied().filter(|&k| !taken[k] && distance(&ends[k].at, &at) <= 4.0 * self.tolerance).collect();
+            let here: Vec<usize> = near
+                .copied()
+                .filter(|&k| !taken[k] && distance(&ends[k].at, &at) <= 4.0 * self.tolerance)
+                .collect();
             here.iter().for_each(|&k| taken[k] = true);
             points.push((at, here));
         }
@@ -74,10 +76,13 @@ impl PlanarPieces {
                 bend <= STRAIGHT_ON && same && a.piece.face == b.piece.face && a.left == b.right()
             }
         };
-        let (smooth, corners): (Vec<_>, Vec<_>) = points.into_iter().partition(|(at, here)| leads_on(at, here));
+        let (smooth, corners): (Vec<_>, Vec<_>) =
+            points.into_iter().partition(|(at, here)| leads_on(at, here));
         let mut vertices: Vec<Vertex> =
             corners.iter().map(|(at, here)| self.vertex(*at, here, &ends, &smooth)).collect();
-        for at in breaks.iter().filter(|at| !corners.iter().any(|(x, _)| distance(x, at) <= 4.0 * self.tolerance)) {
+        for at in
+            breaks.iter().filter(|at| !corners.iter().any(|(x, _)| distance(x, at) <= 4.0 * self.tolerance))
+        {
             vertices.extend(self.on_a_piece(at));
         }
         vertices
@@ -92,14 +97,24 @@ impl PlanarPieces {
                 .map(|(at, along, left)| (index, at, angle(along), left))
         };
         let all = self.pieces.iter().enumerate().flat_map(both);
-        all.map(|(index, at, angle, left)| End { piece: &self.pieces[index], index, at, angle, left }).collect()
+        all.map(|(index, at, angle, left)| End { piece: &self.pieces[index], index, at, angle, left })
+            .collect()
     }
 
-    fn vertex(&self, at: [f64; 2], here: &[usize], ends: &[End<'_>], smooth: &[([f64; 2], Vec<usize>)]) -> Vertex {
+    fn vertex(
+        &self,
+        at: [f64; 2],
+        here: &[usize],
+        ends: &[End<'_>],
+        smooth: &[([f64; 2], Vec<usize>)],
+    ) -> Vertex {
         let mut here: Vec<&End<'_>> = here.iter().map(|&k| &ends[k]).collect();
         here.sort_by(|a, b| a.angle.total_cmp(&b.angle));
-        let ray =
-            |end: &&End<'_>| Ray { angle: end.angle, face: end.piece.face, straight: end.piece.is_straight() };
+        let ray = |end: &&End<'_>| Ray {
+            angle: end.angle,
+            face: end.piece.face,
+            straight: end.piece.is_straight(),
+        };
         // Pieces that lead on from those that meet here belong to the same rays.
         let mut own: Vec<usize> = Vec::new();
         let mut clear = f64::INFINITY;
@@ -121,12 +136,18 @@ impl PlanarPieces {
         }
         let others = self.pieces.iter().enumerate().filter(|(k, _)| !own.contains(k));
         let clear = others.fold(clear, |c, (_, piece)| c.min(piece.curve.distance(&at)));
-        Vertex { at, rays: here.iter().map(ray).collect(), sectors: here.iter().map(|end| end.left).collect(), clear }
+        Vertex {
+            at,
+            rays: here.iter().map(ray).collect(),
+            sectors: here.iter().map(|end| end.left).collect(),
+            clear,
+        }
     }
 
     /// The vertex at a point inside of a piece of the boundary.
     fn on_a_piece(&self, at: &[f64; 2]) -> Option<Vertex> {
-        let near = |piece: &&PlanarPiece| piece.face.is_some() && piece.curve.distance(at) <= 4.0 * self.tolerance;
+        let near =
+            |piece: &&PlanarPiece| piece.face.is_some() && piece.curve.distance(at) <= 4.0 * self.tolerance;
         let piece = self.pieces.iter().find(near)?;
         let t = piece.curve.place_of(at);
         let along = piece.curve.along(t);
@@ -186,7 +207,8 @@ mod tests {
         let regions = RegionMap::new(vec![Some(square([-0.3; 2], [0.3; 2])), None]).expect("regions");
         let vertices = PlanarPieces::new(&domain, &regions).vertices(&[]);
         assert_eq!(vertices.len(), 8);
-        let corner = vertices.iter().find(|v| (v.at[0] - 0.3).abs() + (v.at[1] - 0.3).abs() < 1e-12).expect("there");
+        let corner =
+            vertices.iter().find(|v| (v.at[0] - 0.3).abs() + (v.at[1] - 0.3).abs() < 1e-12).expect("there");
         assert_eq!(corner.rays.len(), 2);
         assert!((corner.clear - 0.6).abs() < 1e-12);
         let inner = corner.sectors.iter().position(|&s| s == Some(0)).expect("the chip");
@@ -196,7 +218,8 @@ mod tests {
     #[test]
     fn what_is_hidden_or_flush_makes_no_vertex() {
         // Two boxes that overlap make one; a region that is flush with the boundary meets it at two points.
-        let union = Shape::union(vec![square([0.0, 0.0], [2.0, 1.0]), square([1.0, 0.0], [3.0, 1.0])]).expect("a union");
+        let union = Shape::union(vec![square([0.0, 0.0], [2.0, 1.0]), square([1.0, 0.0], [3.0, 1.0])])
+            .expect("a union");
         let domain = Domain::from_shape(union, None).expect("a domain");
         let regions = RegionMap::new(vec![Some(square([0.0, 0.0], [0.5, 1.0])), None]).expect("regions");
         let vertices = PlanarPieces::new(&domain, &regions).vertices(&[]);
@@ -211,7 +234,8 @@ mod tests {
     #[test]
     fn quadrants_meet_in_one_point_and_breaks_are_vertices() {
         let domain = Domain::boxed([-1.0; 2], [1.0; 2]).expect("a domain");
-        let both = Shape::union(vec![square([0.0; 2], [1.0; 2]), square([-1.0; 2], [0.0; 2])]).expect("a union");
+        let both =
+            Shape::union(vec![square([0.0; 2], [1.0; 2]), square([-1.0; 2], [0.0; 2])]).expect("a union");
         let regions = RegionMap::new(vec![Some(both), None]).expect("regions");
         let pieces = PlanarPieces::new(&domain, &regions);
         let vertices = pieces.vertices(&[[0.25, 1.0]]);
@@ -233,7 +257,8 @@ mod tests {
         let lens = Shape::intersection(vec![disc([0.3, 0.5]), disc([0.7, 0.5])]).expect("a lens");
         let vertices = PlanarPieces::new(&domain, &regions(lens)).vertices(&[]);
         assert_eq!(vertices.len(), 6);
-        let whole = RegionMap::new(vec![Some(Shape::ball([0.5, 0.5], 0.2).expect("a disc")), None]).expect("regions");
+        let whole =
+            RegionMap::new(vec![Some(Shape::ball([0.5, 0.5], 0.2).expect("a disc")), None]).expect("regions");
         assert_eq!(PlanarPieces::new(&domain, &whole).vertices(&[]).len(), 4);
     }
 }

@@ -21,8 +21,22 @@ const ROUNDING: f64 = 1e-9;
 /// runs along: one that meets the boundary at an angle is less far out.
 const OUTSIDE: f64 = 0.9;
 
+/// How far beside a point other feet of it are looked for where the nearest is none, over the reach. From half the reach the nearest
+/// surface may still be the same one: that of a box which begins at the boundary, for all points nearer to the boundary than the
+/// interface.
+const STARTS: [f64; 2] = [0.5, 1.0];
+
 /// Least cosine of the angle between the normals of two feet on an interface without a bend in between.
 const NO_BEND: f64 = 0.7;
+
+/// How far round a node on the boundary it is looked what is there, in spacings: far more than [`TIE`], far less than what curves.
+const BESIDE: f64 = 1e-5;
+
+/// How far inside of the domain such a place has to be, over its distance from the node: what runs along the boundary is not.
+const INSIDE: f64 = 0.05;
+
+/// Places on half an edge of the square or cube round a node, by dimension: in the plane they see wedges of 7 degrees.
+const ROUND: [i32; 3] = [1, 8, 2];
 
 /// Where the foot on an interface is, the best first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -99,11 +113,45 @@ impl<const D: usize> RegionMap<D> {
         cloud.points().par_iter().zip(cloud.spacing()).map(|(x, &h)| self.label(x, h)).collect()
     }
 
+    /// The same for a cloud of a domain. A node on its boundary that is on the surface of a region, with nothing of the region round
+    /// it in the domain, belongs to what there is: a face of the domain may lie on the plane of a half-space beside it.
+    pub fn labels_within(&self, domain: &Domain<D>, cloud: &Cloud<D>) -> Vec<u16> {
+        let of = |(i, (x, &h)): (usize, (&[f64; D], &f64))| {
+            let label = self.label(x, h);
+            match self.shape(label) {
+                Some(shape) if cloud.is_boundary(i) && is_on_surface(shape, x, h) => {
+                    self.label_beside(domain, x, BESIDE * h, label)
+                }
+                _ => label,
+            }
+        };
+        cloud.points().par_iter().zip(cloud.spacing()).enumerate().map(of).collect()
+    }
+
+    /// `label`, where the region reaches to `x` within the domain; else that of the most of what is round `x`.
+    fn label_beside(&self, domain: &Domain<D>, x: &[f64; D], step: f64, label: u16) -> u16 {
+        let around = directions::<D>().map(|direction| axpy(x, step, &direction));
+        let inside = around.filter(|p| domain.distance_estimate(p) < -INSIDE * step);
+        let mut found: Vec<(u16, usize)> = Vec::new();
+        for label in inside.map(|p| self.label(&p, 0.0)) {
+            match found.iter_mut().find(|(known, _)| *known == label) {
+                Some((_, times)) => *times += 1,
+                None => found.push((label, 1)),
+            }
+        }
+        let most = found.iter().max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)));
+        match most {
+            Some(&(most, _)) if found.iter().all(|(known, _)| *known != label) => most,
+            _ => label,
+        }
+    }
+
     /// Projects `x` onto the interface between regions `a` and `b`; the normal points from `a` to `b` and the distance
     /// is negative on the side of `a`.
     ///
     /// The interface lies on the surface of the one named first. Where other regions cover that surface at the foot
-    /// of `x`, starting points half the reach away along the axes are tried and the nearest valid foot is returned.
+    /// of `x`, starting points half the reach away along the axes, and failing those the whole, are tried and the nearest valid foot
+    /// is returned.
     ///
     /// # Errors
     /// [`ProjectionError`] where the surface is out of reach, and [`ProjectionError::NotAnInterface`] where it does
@@ -161,15 +209,18 @@ impl<const D: usize> RegionMap<D> {
         let mut found = shape.project(x, reach)?;
         let nearest = placed(&found);
         if nearest != Where::Inside {
-            let offsets = (0..D).flat_map(|i| [-0.5 * reach, 0.5 * reach].map(|t| (i, t)));
-            let others = offsets.filter_map(|(i, t)| {
-                let mut start = *x;
-                start[i] += t;
-                let p = shape.project(&start, reach).ok()?;
-                let (place, distance) = (placed(&p), crate::vector::distance(x, &p.point));
-                (distance <= reach && place < Where::Along).then_some((place, Projection { distance, ..p }))
+            let best = STARTS.iter().find_map(|&far| {
+                let offsets = (0..D).flat_map(|i| [-far * reach, far * reach].map(|t| (i, t)));
+                let others = offsets.filter_map(|(i, t)| {
+                    let mut start = *x;
+                    start[i] += t;
+                    let p = shape.project(&start, reach).ok()?;
+                    let (place, distance) = (placed(&p), crate::vector::distance(x, &p.point));
+                    (distance <= reach && place < Where::Along)
+                        .then_some((place, Projection { distance, ..p }))
+                });
+                others.min_by(|p, q| p.0.cmp(&q.0).then(p.1.distance.total_cmp(&q.1.distance)))
             });
-            let best = others.min_by(|p, q| p.0.cmp(&q.0).then(p.1.distance.total_cmp(&q.1.distance)));
             let bends = |p: &Projection<D>| dot(&p.normal, &found.normal) < NO_BEND;
             found = match best {
                 // The interface leads on beyond the boundary.
@@ -178,7 +229,12 @@ impl<const D: usize> RegionMap<D> {
                 }
                 None if nearest == Where::Beyond => found,
                 Some((_, mut p)) => {
-                    p.distance = p.distance.copysign(shape.level(x));
+                    // On another part of the surface, at the boundary, the level says nothing about the side.
+                    let side = match is_on_surface(shape, x, reach) {
+                        true => dot(&axpy(x, -1.0, &p.point), &p.normal),
+                        false => shape.level(x),
+                    };
+                    p.distance = p.distance.copysign(side);
                     p
                 }
                 None => return Err(none()),
@@ -190,4 +246,26 @@ impl<const D: usize> RegionMap<D> {
         }
         Ok(found)
     }
+}
+
+/// Whether a point is on the surface of a shape, up to [`TIE`].
+fn is_on_surface<const D: usize>(shape: &Shape<D>, x: &[f64; D], spacing: f64) -> bool {
+    shape.level(x).abs() <= TIE * spacing * norm(&shape.gradient(x))
+}
+
+/// Unit vectors to the places of a grid on the surface of a square or cube.
+fn directions<const D: usize>() -> impl Iterator<Item = [f64; D]> {
+    let most = ROUND[D.clamp(1, 3) - 1];
+    let side = (2 * most + 1) as usize;
+    (0..side.pow(D as u32)).filter_map(move |code| {
+        let mut rest = code;
+        let place: [i32; D] = std::array::from_fn(|_| {
+            let digit = (rest % side) as i32 - most;
+            rest /= side;
+            digit
+        });
+        let outermost = place.iter().any(|c| c.abs() == most);
+        let place = place.map(f64::from);
+        outermost.then(|| scale(1.0 / norm(&place), &place))
+    })
 }

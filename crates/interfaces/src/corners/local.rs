@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use meshless_geometry::{FaceId, Vertex};
 use nalgebra::{DMatrix, DVector};
 
+use super::CornerData;
 use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
-use crate::{Condition, Problem};
+use crate::{Condition, InterfaceJump};
 
 /// Where diffusivities and the kinds of conditions beside a vertex are read, over the length of its shortest ray.
 const BESIDE: f64 = 1e-6;
@@ -27,6 +28,15 @@ const NEGLIGIBLE: f64 = 1e-7;
 
 /// Angle, in radians, up to which a point belongs to the sector on the other side of a ray as well: rounding.
 const ON_RAY: f64 = 1e-6;
+
+/// Errors of the polynomials that stand for the data may be so many times as large as between the points where they are known.
+const DOUBTFUL: f64 = 10.0;
+
+/// How far along the rays data are looked at to tell what they do at the vertex, over their length.
+const NEAR: f64 = 0.25;
+
+/// Difference of angles, in radians, up to which two wedges are the same: rounding of vertices.
+const ALIKE: f64 = 1e-12;
 
 /// Why corner functions do not serve a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,6 +105,9 @@ pub(crate) struct LocalSolution {
     pub(crate) forced: Vec<Forced>,
     /// What a source of 1 everywhere adds, beside its polynomial.
     pub(crate) unit: Forced,
+    /// How far the polynomials that stand for the data are off, and their degree.
+    pub(crate) doubt: f64,
+    data_degree: usize,
 }
 
 /// The scales in which a local problem is solved.
@@ -112,16 +125,24 @@ pub(crate) struct Scales {
 
 impl Scales {
     /// Scale 1 everywhere, and what the sources are right at the vertex.
-    pub(crate) fn plain<const D: usize>(problem: &Problem<'_, D>, local: &Local) -> Self {
+    pub(crate) fn plain<const D: usize>(problem: &CornerData<'_, D>, local: &Local) -> Self {
         let sectors = local.wedge.sectors.len();
-        let radius = 0.5 * local.clear;
+        let radius = NEAR * local.clear;
         let source = |k: usize| {
             let material = &problem.materials[local.labels[k] as usize];
-            let f = material.source.as_ref().map_or(0.0, |f| f.at(&in_space(local.inside(k, BESIDE * local.clear))));
+            let f = material
+                .source
+                .as_ref()
+                .map_or(0.0, |f| f.at(&in_space(local.inside(k, BESIDE * local.clear))));
             let f = if f.is_finite() { f } else { 0.0 };
             square(-radius * radius * f / (4.0 * local.wedge.sectors[k].eta))
         };
-        Self { scale: vec![1.0; sectors], offset: vec![0.0; sectors], radius, sources: (0..sectors).map(source).collect() }
+        Self {
+            scale: vec![1.0; sectors],
+            offset: vec![0.0; sectors],
+            radius,
+            sources: (0..sectors).map(source).collect(),
+        }
     }
 }
 
@@ -134,7 +155,11 @@ impl Local {
     }
 
     /// The local problems at a vertex: one for every part of the domain that meets there.
-    pub(crate) fn all<const D: usize>(problem: &Problem<'_, D>, vertex: &Vertex, degree: f64) -> Vec<Self> {
+    pub(crate) fn all<const D: usize>(
+        problem: &CornerData<'_, D>,
+        vertex: &Vertex,
+        known: &mut KnownWedges,
+    ) -> Vec<Self> {
         let count = vertex.rays.len();
         let outside: Vec<usize> = (0..count).filter(|&k| vertex.sectors[k].is_none()).collect();
         let firsts: Vec<usize> = match outside.len() {
@@ -142,20 +167,20 @@ impl Local {
             _ => outside.iter().map(|k| (k + 1) % count).filter(|&k| vertex.sectors[k].is_some()).collect(),
         };
         let touching = (firsts.len() > 1).then_some(Obstacle::Touching);
-        let of_part = |&first: &usize| {
+        let mut of_part = |&first: &usize| {
             let own = (0..count).map(|k| (first + k) % count).take_while(|&k| vertex.sectors[k].is_some());
-            Self::of_part(problem, vertex, &own.collect::<Vec<_>>(), degree)
+            Self::of_part(problem, vertex, &own.collect::<Vec<_>>(), known)
         };
-        let mut all: Vec<Self> = firsts.iter().filter_map(of_part).collect();
+        let mut all: Vec<Self> = firsts.iter().filter_map(&mut of_part).collect();
         all.iter_mut().for_each(|local| local.obstacle = local.obstacle.or(touching));
         all
     }
 
     fn of_part<const D: usize>(
-        problem: &Problem<'_, D>,
+        problem: &CornerData<'_, D>,
         vertex: &Vertex,
         own: &[usize],
-        degree: f64,
+        known: &mut KnownWedges,
     ) -> Option<Self> {
         let closed = own.len() == vertex.rays.len();
         let mut obstacle = None;
@@ -205,7 +230,7 @@ impl Local {
             ends = Some(found);
         }
         let wedge = Wedge { sectors, ends };
-        let exponents = wedge.exponents(degree);
+        let exponents = known.exponents(&wedge);
         Some(Self { at: vertex.at, start, wedge, labels, faces, clear: vertex.clear, obstacle, exponents })
     }
 
@@ -262,7 +287,7 @@ impl Local {
     /// Solves the local problem with its data and the polynomials of its sources; an obstacle where these have no values.
     pub(crate) fn solve<const D: usize>(
         &self,
-        problem: &Problem<'_, D>,
+        problem: &CornerData<'_, D>,
         scales: &Scales,
         degree: usize,
     ) -> Result<LocalSolution, Obstacle> {
@@ -270,19 +295,15 @@ impl Local {
         wedge.sectors.iter_mut().zip(&scales.scale).for_each(|(sector, &scale)| sector.scale = scale);
         let functions: Vec<Harmonic> =
             self.exponents.iter().flat_map(|&(power, count)| wedge.functions(power, count)).collect();
-        let resonant = |power: f64| -> Vec<Harmonic> {
-            let same = |f: &&Harmonic| power > 0.0 && (f.power - power).abs() < WHOLE;
-            functions.iter().filter(same).map(|f| Harmonic { power, ..f.clone() }).collect()
-        };
         let data_degree = (degree + DEGREES_BEYOND).min(HIGHEST_DEGREE);
-        let mut data = self.data(problem, &wedge, scales, data_degree).ok_or(Obstacle::Data)?;
+        let (mut data, doubt) = self.data(problem, &wedge, scales, data_degree).ok_or(Obstacle::Data)?;
         add_sources(&wedge, self.start, &scales.sources, &mut data);
         let largest = data.iter().flat_map(numbers).fold(0.0_f64, |m, x| m.max(x.abs()));
         let mut forced = Vec::new();
         for (power, mut data) in data.into_iter().enumerate() {
             round(&mut data, ROUNDING * largest);
             let power = power as f64;
-            forced.push(wedge.forced(power, &data, &resonant(power)).ok_or(Obstacle::Data)?);
+            forced.push(wedge.forced(power, &data).ok_or(Obstacle::Data)?);
         }
         let units: Vec<Vec<Monomial>> = wedge
             .sectors
@@ -292,44 +313,51 @@ impl Local {
         let mut unit = vec![RayData::default(); 3];
         unit.iter_mut().for_each(|data| *data = empty(&wedge));
         add_sources(&wedge, self.start, &units, &mut unit);
-        let unit = wedge.forced(2.0, &unit[2], &resonant(2.0)).ok_or(Obstacle::Data)?;
-        Ok(LocalSolution { functions, forced, unit })
+        let unit = wedge.forced(2.0, &unit[2]).ok_or(Obstacle::Data)?;
+        Ok(LocalSolution { functions, forced, unit, doubt, data_degree })
     }
 
     /// The jumps and values along the rays as polynomials of r / R, one entry a power; fluxes times r.
     fn data<const D: usize>(
         &self,
-        problem: &Problem<'_, D>,
+        problem: &CornerData<'_, D>,
         wedge: &Wedge,
         scales: &Scales,
         degree: usize,
-    ) -> Option<Vec<RayData>> {
-        let mut all = vec![empty(wedge); degree + 2];
+    ) -> Option<(Vec<RayData>, f64)> {
         let radius = scales.radius;
+        let mut doubt = 0.0_f64;
+        let mut polynomial = |value: &dyn Fn(f64) -> Option<f64>| {
+            let (factors, error) = along(radius, degree, value)?;
+            doubt = doubt.max(error);
+            Some(factors)
+        };
+        let mut all = vec![empty(wedge); degree + 2];
         let sectors = wedge.sectors.len();
         for ray in 0..wedge.inner_rays() {
             let next = (ray + 1) % sectors;
             all[0].values[ray] = scales.offset[ray] - scales.offset[next];
             let (before, after) = (self.labels[ray], self.labels[next]);
-            let Some((jump, sign)) = problem.jump_between(before, after) else { continue };
+            let Some((jump, sign)) = jump_between(problem.jumps, before, after) else { continue };
             let at = |t: f64| in_space(self.on_ray(ray + 1, t));
             if let Some(field) = &jump.value {
-                let values = along(radius, degree, |t| Some(sign * field.at(&at(t))))?;
+                let values = polynomial(&|t| Some(sign * field.at(&at(t))))?;
                 values.iter().enumerate().for_each(|(power, c)| all[power].values[ray] += c);
             }
             if let Some(field) = &jump.flux {
-                let fluxes = along(radius, degree, |t| Some(field.at(&at(t))))?;
+                let fluxes = polynomial(&|t| Some(field.at(&at(t))))?;
                 fluxes.iter().enumerate().for_each(|(power, c)| all[power + 1].fluxes[ray] += radius * c);
             }
         }
         for (k, end) in wedge.ends.iter().flatten().enumerate() {
-            let (ray, sector, face) = if k == 0 { (0, 0, self.faces[0]) } else { (sectors, sectors - 1, self.faces[1]) };
+            let (ray, sector, face) =
+                if k == 0 { (0, 0, self.faces[0]) } else { (sectors, sectors - 1, self.faces[1]) };
             let condition = |t: f64| problem.boundary.condition(face, &in_space(self.on_ray(ray, t)));
             // The angle grows into the domain on the first ray, and out of it on the last.
             let (out, eta) = (if k == 0 { -1.0 } else { 1.0 }, wedge.sectors[sector].eta);
             match end {
                 End::Dirichlet => {
-                    let values = along(radius, degree, |t| match condition(t)? {
+                    let values = polynomial(&|t| match condition(t)? {
                         Condition::Dirichlet(value) => Some(value),
                         _ => None,
                     })?;
@@ -337,15 +365,18 @@ impl Local {
                     all[0].ends[k] -= scales.offset[sector];
                 }
                 End::Flux => {
-                    let fluxes = along(radius, degree, |t| match condition(t)?.as_flux(eta)? {
+                    let fluxes = polynomial(&|t| match condition(t)?.as_flux(eta)? {
                         (0.0, flux) => Some(flux),
                         _ => None,
                     })?;
-                    fluxes.iter().enumerate().for_each(|(power, c)| all[power + 1].ends[k] = out * radius * c);
+                    fluxes
+                        .iter()
+                        .enumerate()
+                        .for_each(|(power, c)| all[power + 1].ends[k] = out * radius * c);
                 }
             }
         }
-        Some(all)
+        Some((all, doubt))
     }
 }
 
@@ -354,19 +385,74 @@ impl LocalSolution {
     /// on the direction; `None` where polynomials do.
     pub(crate) fn broken_power(&self, exponents: Option<f64>) -> Option<f64> {
         let size = |factors: &[[f64; 2]]| factors.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let largest = self.forced.iter().map(|f| size(&f.plain)).fold(0.0, f64::max);
-        let threshold = NEGLIGIBLE * largest;
         let turning = self.value_depends_on_direction();
-        let logarithm = self.forced.iter().find(|f| size(&f.logarithm) > threshold).map(|f| f.power);
+        let logarithm =
+            self.forced.iter().find(|f| size(&f.logarithm) > self.rounding(f.power)).map(|f| f.power);
         let least = [turning.then_some(0.0), logarithm, exponents];
         least.into_iter().flatten().min_by(f64::total_cmp)
+    }
+
+    /// What may be an error of the data's polynomials in a factor of a power: a derivative of order k of a polynomial is up to
+    /// `degree^(2 k)` times as large as the polynomial (Markov's inequality).
+    fn rounding(&self, power: f64) -> f64 {
+        let size = self.size();
+        let error = DOUBTFUL * self.doubt.max(f64::EPSILON * size);
+        (NEGLIGIBLE * size).max(error * (self.data_degree as f64).powf(2.0 * power))
+    }
+
+    /// The size of what the data add.
+    pub(crate) fn size(&self) -> f64 {
+        self.forced.iter().flat_map(|f| f.plain.iter().flatten()).fold(0.0, |m, x| m.max(x.abs()))
     }
 
     /// Whether there is no one value at the vertex: two that are prescribed meet there.
     pub(crate) fn value_depends_on_direction(&self) -> bool {
         let Some(first) = self.forced.first().filter(|f| f.power == 0.0) else { return false };
         let [plain, turning] = [0, 1].map(|k| first.plain.iter().fold(0.0_f64, |m, f| m.max(f[k].abs())));
-        turning > NEGLIGIBLE * plain.max(turning)
+        turning > (NEGLIGIBLE * plain.max(turning)).max(self.rounding(0.0))
+    }
+}
+
+/// The jump between two regions, with the sign that belongs to going from one to the other.
+fn jump_between<const D: usize>(
+    jumps: &[InterfaceJump<D>],
+    from: u16,
+    to: u16,
+) -> Option<(&InterfaceJump<D>, f64)> {
+    jumps.iter().find_map(|jump| match jump.between {
+        [a, b] if (a, b) == (from, to) => Some((jump, 1.0)),
+        [a, b] if (b, a) == (from, to) => Some((jump, -1.0)),
+        _ => None,
+    })
+}
+
+/// Wedges whose exponents were counted before: many corners of a scene are alike.
+pub(crate) struct KnownWedges {
+    degree: f64,
+    known: Vec<(Wedge, Vec<(f64, usize)>)>,
+}
+
+impl KnownWedges {
+    /// Of none yet, with exponents up to a degree.
+    pub(crate) fn new(degree: f64) -> Self {
+        Self { degree, known: Vec::new() }
+    }
+
+    /// The exponents of a wedge, up to the degree.
+    pub(crate) fn exponents(&mut self, wedge: &Wedge) -> Vec<(f64, usize)> {
+        let alike = |(other, _): &&(Wedge, Vec<(f64, usize)>)| {
+            other.ends == wedge.ends
+                && other.sectors.len() == wedge.sectors.len()
+                && other.sectors.iter().zip(&wedge.sectors).all(|(a, b)| {
+                    (a.opening - b.opening).abs() < ALIKE && (a.eta - b.eta).abs() <= f64::EPSILON * a.eta
+                })
+        };
+        if let Some((_, exponents)) = self.known.iter().find(alike) {
+            return exponents.clone();
+        }
+        let exponents = wedge.exponents(self.degree);
+        self.known.push((wedge.clone(), exponents.clone()));
+        exponents
     }
 }
 
@@ -431,22 +517,29 @@ fn add_sources(wedge: &Wedge, start: f64, sources: &[Vec<Monomial>], data: &mut 
     }
 }
 
-/// The polynomial of a degree in `t / radius` that has the values of a function at Chebyshev points from 0 to the radius.
-fn along(radius: f64, degree: usize, value: impl Fn(f64) -> Option<f64>) -> Option<Vec<f64>> {
+/// The polynomial of a degree in `t / radius` that has the values of a function at Chebyshev points from 0 to the radius, and how far
+/// it is off between them.
+fn along(radius: f64, degree: usize, value: &dyn Fn(f64) -> Option<f64>) -> Option<(Vec<f64>, f64)> {
     let count = degree + 1;
-    let place = |k: usize| {
-        let angle = std::f64::consts::PI * (k as f64 + 0.5) / count as f64;
+    let place = |k: f64| {
+        let angle = std::f64::consts::PI * (k + 0.5) / count as f64;
         0.5 * (1.0 - angle.cos())
     };
-    let values: Option<Vec<f64>> =
-        (0..count).map(|k| value(radius * place(k)).filter(|v| v.is_finite())).collect();
+    let at = |k: f64| value(radius * place(k)).filter(|v| v.is_finite());
+    let values: Option<Vec<f64>> = (0..count).map(|k| at(k as f64)).collect();
     let values = values?;
     if values.iter().all(|v| *v == values[0]) {
-        return Some(vec![values[0]]);
+        return Some((vec![values[0]], 0.0));
     }
-    let powers = DMatrix::from_fn(count, count, |k, power| place(k).powi(power as i32));
-    let solution = powers.lu().solve(&DVector::from_vec(values))?;
-    Some(solution.iter().copied().collect())
+    let powers = DMatrix::from_fn(count, count, |k, power| place(k as f64).powi(power as i32));
+    let factors: Vec<f64> = powers.lu().solve(&DVector::from_vec(values))?.iter().copied().collect();
+    let polynomial = |t: f64| factors.iter().rev().fold(0.0, |sum, c| sum * t + c);
+    let mut error = 0.0_f64;
+    for k in 0..degree {
+        let between = k as f64 + 0.5;
+        error = error.max((polynomial(place(between)) - at(between)?).abs());
+    }
+    Some((factors, error))
 }
 
 /// A point of the plane in any dimension.

@@ -1,18 +1,20 @@
 //! Vertices of interfaces and boundaries in the plane, where solutions are singular: `u ~ r^lambda`.
 //!
-//! Where straight edges meet, the local solutions are known in closed form (`docs/corners.md`). [`corners`] finds the vertices of a
+//! Where straight edges meet, the local solutions are known in closed form (`docs/corners.md`). [`corners()`] finds the vertices of a
 //! problem and says which of them have a solution that is no polynomial on every side; the sharp method uses the functions there in
 //! place of polynomials.
 
+mod edges;
 mod local;
 mod wedge;
 
-use meshless_geometry::{FaceId, PlanarPiece, PlanarPieces};
+use meshless_geometry::{Domain, FaceId, PlanarPiece, PlanarPieces, RegionMap};
 
+use local::KnownWedges;
 pub use local::Obstacle;
 pub(crate) use local::{Local, LocalSolution, Monomial, Scales, in_space};
 
-use crate::{Condition, Problem};
+use crate::{BoundaryData, Condition, InterfaceJump, Material, Problem};
 
 /// Samples on a spacing of the boundary, between which its conditions change once at most.
 const SAMPLES: f64 = 4.0;
@@ -30,40 +32,85 @@ const ABRUPT: f64 = 3.0;
 /// Part of the largest value on a piece below which a change within rounding of a point is no jump.
 const LEAST_JUMP: f64 = 1e-6;
 
-/// A vertex at which the solution is no polynomial.
+/// A vertex at which the solution is no polynomial, or in space an edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corner {
-    /// Where.
+    /// Where; a point of it, of an edge.
     pub at: Vec<f64>,
     /// The smallest power of the distance that a solution has there and polynomials have not; 0 where two prescribed values meet.
     pub exponent: f64,
+    /// How far away the next one is, or where else the solution is another one.
+    pub clear: f64,
     /// Why corner functions do not serve it; `None` where they do.
     pub obstacle: Option<Obstacle>,
 }
 
+/// What corners depend on: a problem before it has a cloud.
+#[derive(Clone, Copy)]
+pub struct CornerData<'a, const D: usize> {
+    /// The domain.
+    pub domain: &'a Domain<D>,
+    /// The shapes of the regions.
+    pub regions: &'a RegionMap<D>,
+    /// Data of every region.
+    pub materials: &'a [Material<D>],
+    /// The boundary conditions.
+    pub boundary: &'a dyn BoundaryData<D>,
+    /// Prescribed jumps.
+    pub jumps: &'a [InterfaceJump<D>],
+    /// A length on which conditions change once at most.
+    pub spacing: f64,
+}
+
+impl<const D: usize> std::fmt::Debug for CornerData<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CornerData").field("regions", &self.materials.len()).finish_non_exhaustive()
+    }
+}
+
+impl<'a, const D: usize> From<&Problem<'a, D>> for CornerData<'a, D> {
+    fn from(problem: &Problem<'a, D>) -> Self {
+        let Problem { domain, regions, materials, boundary, jumps, .. } = *problem;
+        let spacing = problem.cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        Self { domain, regions, materials, boundary, jumps, spacing }
+    }
+}
+
 /// The local problems at all vertices of the plane, with exponents up to a degree.
-pub(crate) fn local_problems<const D: usize>(problem: &Problem<'_, D>, degree: f64) -> Vec<Local> {
-    let pieces = PlanarPieces::new(problem.domain, problem.regions);
-    let vertices = pieces.vertices(&breaks(problem, &pieces));
-    vertices.iter().flat_map(|vertex| Local::all(problem, vertex, degree)).collect()
+pub(crate) fn local_problems<const D: usize>(data: &CornerData<'_, D>, degree: f64) -> Vec<Local> {
+    if D != 2 {
+        return Vec::new();
+    }
+    let pieces = PlanarPieces::new(data.domain, data.regions);
+    let vertices = pieces.vertices(&breaks(data, &pieces));
+    let mut known = KnownWedges::new(degree);
+    vertices.iter().flat_map(|vertex| Local::all(data, vertex, &mut known)).collect()
 }
 
 /// The vertices at which the solution has a power of the distance below `order` that is no polynomial. With a method that has no
 /// functions for them, all of them are obstacles to its order.
-pub fn corners<const D: usize>(problem: &Problem<'_, D>, order: usize) -> Vec<Corner> {
-    let broken = |local: &Local| Some((local.at, broken_power(problem, local, order)?));
-    let all = local_problems(problem, order as f64);
-    all.iter()
-        .filter_map(broken)
-        .map(|(at, exponent)| Corner { at: at.to_vec(), exponent, obstacle: Some(Obstacle::Method) })
-        .collect()
+pub fn corners<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Vec<Corner> {
+    let corner = |local: &Local| {
+        let exponent = broken_power(data, local, order)?;
+        let obstacle = Some(local.obstacle.unwrap_or(Obstacle::Method));
+        Some(Corner { at: local.at.to_vec(), exponent, clear: local.clear, obstacle })
+    };
+    match D {
+        2 => local_problems(data, order as f64).iter().filter_map(corner).collect(),
+        3 => edges::edges(data, order),
+        _ => Vec::new(),
+    }
 }
 
-/// The smallest power below `order` that is no polynomial on every side of a vertex, as far as data of degree 0 tell.
-pub(crate) fn broken_power<const D: usize>(problem: &Problem<'_, D>, local: &Local, order: usize) -> Option<f64> {
+/// The smallest power below `order` that is no polynomial on every side of a vertex, for the source right at the vertex.
+pub(crate) fn broken_power<const D: usize>(
+    data: &CornerData<'_, D>,
+    local: &Local,
+    order: usize,
+) -> Option<f64> {
     let exponent = local.broken_exponent();
-    let scales = Scales::plain(problem, local);
-    let solution = local.solve(problem, &scales, 0).ok();
+    let scales = Scales::plain(data, local);
+    let solution = local.solve(data, &scales, order).ok();
     let power = match &solution {
         Some(solution) => solution.broken_power(exponent),
         None => exponent,
@@ -72,18 +119,18 @@ pub(crate) fn broken_power<const D: usize>(problem: &Problem<'_, D>, local: &Loc
 }
 
 /// The points of the boundary where conditions change their kind or their values jump, inside of smooth pieces.
-fn breaks<const D: usize>(problem: &Problem<'_, D>, pieces: &PlanarPieces) -> Vec<[f64; 2]> {
-    let spacing = problem.cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b));
+fn breaks<const D: usize>(problem: &CornerData<'_, D>, pieces: &PlanarPieces) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     for piece in pieces.pieces() {
         let Some(face) = piece.face else { continue };
-        let count = (SAMPLES * piece.length() / spacing).ceil() as usize;
+        let count = (SAMPLES * piece.length() / problem.spacing).ceil() as usize;
         let count = count.clamp(LEAST_SAMPLES, MOST_SAMPLES);
         // Ends belong to vertices anyhow, and data at them to either side.
         let place = |k: usize| (k as f64 + 0.5) / count as f64;
         let data: Vec<Datum> = (0..count).map(|k| Datum::at(problem, face, piece, place(k))).collect();
         let largest = data.iter().fold(0.0_f64, |m, d| m.max(d.value.abs()));
-        let step = |k: usize| data.get(k + 1).zip(data.get(k)).map_or(0.0, |(b, a)| (b.value - a.value).abs());
+        let step =
+            |k: usize| data.get(k + 1).zip(data.get(k)).map_or(0.0, |(b, a)| (b.value - a.value).abs());
         for k in 0..count - 1 {
             let changes = data[k].kind != data[k + 1].kind;
             let beside = if k > 0 { step(k - 1) } else { 0.0 }.max(step(k + 1));
@@ -117,7 +164,7 @@ struct Datum {
 }
 
 impl Datum {
-    fn at<const D: usize>(problem: &Problem<'_, D>, face: FaceId, piece: &PlanarPiece, t: f64) -> Self {
+    fn at<const D: usize>(problem: &CornerData<'_, D>, face: FaceId, piece: &PlanarPiece, t: f64) -> Self {
         let (kind, value) = match problem.boundary.condition(face, &in_space(piece.at(t))) {
             None => (0, 0.0),
             Some(Condition::Dirichlet(value)) => (1, value),

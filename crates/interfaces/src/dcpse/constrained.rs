@@ -20,8 +20,8 @@ const NODES_PER_MONOMIAL: f64 = 2.4;
 /// most, and the farthest of them still do.
 const WIDTH: f64 = 2.25;
 
-/// Least weight of the side of the smaller diffusivity. With less the level of that side gets lost: a scalp beyond a skull
-/// of 1/79 of its conductivity was 30 % off.
+/// Least weight of the side of the smaller diffusivity up to a contrast of 100. With less the level of that side gets lost: a scalp
+/// beyond a skull of 1/79 of its conductivity was 30 % off.
 const LEAST_SHARE: f64 = 0.1;
 
 /// Where nodes are few, the unit of length grows, so that the farthest node is at most so many units away.
@@ -246,11 +246,18 @@ impl<const D: usize> GhostMaker<D> for ConstrainedGhosts<'_, D> {
         let foot = Foot { spacing: self.unit(foot, scratch), ..*foot };
         let sides = [own, other].map(|r| equation(&self.problem.materials[r as usize], point, foot.spacing));
         let largest = sides[0].eta.max(sides[1].eta);
-        let shares = sides.each_ref().map(|side| (side.eta / largest).max(LEAST_SHARE));
+        let shares = sides.each_ref().map(|side| share(side.eta / largest));
         self.observe(&foot, shares, 2 * n, scratch);
         self.join(&foot, [own, other], sides, scratch);
         self.evaluate(&self.problem.cloud.points()[q], &foot, scratch)
     }
+}
+
+/// The weight of a side by its diffusivity over the larger one. What its polynomial leaves over goes into the level of the stiff side by
+/// the square of the weight, and the rows of the stiff side multiply that by the contrast: a weight that falls as the square root of the
+/// ratio leaves an error that does not know the contrast, and still lets the soft side determine the flux.
+fn share(ratio: f64) -> f64 {
+    ratio.max(ratio.sqrt().min(LEAST_SHARE))
 }
 
 fn axis<const D: usize>(axis: usize, order: u8) -> [u8; D] {

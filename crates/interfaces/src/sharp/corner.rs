@@ -11,6 +11,10 @@ const ROUND: f64 = 0.02;
 /// Least distance of such a place from the corner, over that of where it was looked for: what is nearer is the corner again.
 const APART: f64 = 0.1;
 
+/// How far feet are looked for, over how far beside the corner: the two sides of a foot are told apart at 1e-4 of that, so that they are
+/// right down to APART beside the corner of a sector of a few degrees, and far more than the rounding of coordinates apart.
+const REACH: f64 = 40.0;
+
 /// Cosine of the angle between two normals from which on they belong to one smooth piece.
 const SMOOTH: f64 = 0.999;
 
@@ -34,14 +38,18 @@ impl<const D: usize> Corner<'_, D> {
     /// point is that of one of them, too, but any.
     pub(super) fn pieces(&self) -> Vec<Foot<D>> {
         let step = BESIDE * self.spacing;
-        let around = || directions(&self.normal).filter_map(|d| self.foot(&self.at, &d, step));
+        let reach = REACH * step;
+        let around = || directions(&self.normal).filter_map(|d| self.foot(&self.at, &d, step, reach));
         let mut pieces: Vec<Foot<D>> = Vec::new();
         if D == 1 || around().all(|(_, normal)| same(&normal, &self.normal)) {
             return pieces;
         }
         for (at, normal) in around() {
             let known = pieces.iter().any(|(_, other)| same(other, &normal));
-            if !known && apart(&at, &self.at) > APART * step && self.is_smooth(&at, &normal, ROUND * step) {
+            if !known
+                && apart(&at, &self.at) > APART * step
+                && self.is_smooth(&at, &normal, ROUND * step, reach)
+            {
                 pieces.push((at, normal));
             }
         }
@@ -49,15 +57,16 @@ impl<const D: usize> Corner<'_, D> {
     }
 
     /// Whether the interface has one normal all round a point.
-    fn is_smooth(&self, at: &[f64; D], normal: &[f64; D], step: f64) -> bool {
-        directions(normal).all(|d| self.foot(at, &d, step).is_some_and(|(_, other)| same(&other, normal)))
+    fn is_smooth(&self, at: &[f64; D], normal: &[f64; D], step: f64, reach: f64) -> bool {
+        directions(normal)
+            .all(|d| self.foot(at, &d, step, reach).is_some_and(|(_, other)| same(&other, normal)))
     }
 
-    /// The foot of a point beside another one.
-    fn foot(&self, at: &[f64; D], direction: &[f64; D], step: f64) -> Option<Foot<D>> {
+    /// The foot of a point beside another one, within a reach.
+    fn foot(&self, at: &[f64; D], direction: &[f64; D], step: f64, reach: f64) -> Option<Foot<D>> {
         let x = std::array::from_fn(|k| at[k] + step * direction[k]);
         let [a, b] = self.labels;
-        let foot = self.problem.regions.project_within(self.problem.domain, a, b, &x, self.spacing).ok()?;
+        let foot = self.problem.regions.project_within(self.problem.domain, a, b, &x, reach).ok()?;
         Some((foot.point, foot.normal))
     }
 }

@@ -249,7 +249,11 @@ impl<const D: usize> Fit<D> {
 
     fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         let at_vertex = stencil.vertex.is_some();
-        let boundary: usize = if at_vertex { 0 } else { stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum() };
+        let boundary: usize = if at_vertex {
+            0
+        } else {
+            stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum()
+        };
         let at_nodes = stencil.part_of.iter().filter(|&&part| self.parts.has_rows(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
             2 + sides.iter().filter(|&&part| self.parts.has_rows(part)).count()

@@ -56,6 +56,11 @@ impl<const D: usize> InterfacePoint<D> {
     pub(super) fn largest(&self) -> f64 {
         self.sides[0].eta.max(self.sides[1].eta)
     }
+
+    /// The smaller diffusivity.
+    pub(super) fn smallest(&self) -> f64 {
+        self.sides[0].eta.min(self.sides[1].eta)
+    }
 }
 
 /// All interfaces.

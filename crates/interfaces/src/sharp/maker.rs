@@ -86,6 +86,10 @@ pub(super) struct Row {
     /// Entries of the mass, that of the node itself first; empty in steady scenes.
     pub(super) mass: Vec<f64>,
     pub(super) crosses: bool,
+    /// Its fit has the functions of a vertex.
+    pub(super) at_vertex: bool,
+    /// Whether it is the balance over the node's cell.
+    pub(super) balanced: bool,
     pub(super) enlarged: bool,
     /// The gradient at the node, where it is kept.
     pub(super) gradient: Option<GradientRow>,
@@ -277,6 +281,8 @@ impl<'a, const D: usize> Maker<'a, D> {
             rhs,
             mass: mass.iter().map(|m| factor * m).collect(),
             crosses: stencil.parts.len() > 1,
+            at_vertex: stencil.vertex.is_some(),
+            balanced: false,
             enlarged,
             gradient: self.keeps_gradients().then(|| self.gradient_row(scratch)),
         })

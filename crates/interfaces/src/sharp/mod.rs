@@ -6,12 +6,14 @@
 //! of their own, and their nodes' unknowns carry the flux. See `docs/sharp.md`.
 
 mod adapted;
+mod balance;
 mod basis;
 mod connected;
 mod corner;
 mod dense;
 mod fit;
 mod harmonic;
+mod held;
 mod interface;
 mod maker;
 mod params;
@@ -35,7 +37,7 @@ use crate::{parallel, thin_layers};
 use connected::ConnectedParts;
 use interface::InterfacePoints;
 use maker::{Maker, Row, Scratch};
-pub use params::{Form, MAX_ORDER, SharpParams};
+pub use params::{Conservation, Form, MAX_ORDER, SharpParams};
 use sample::Values;
 use unknowns::Unknowns;
 
@@ -96,8 +98,14 @@ impl<const D: usize> Method<D> for Sharp {
             })?;
             let gradients =
                 maker.keeps_gradients().then(|| gradients(maker, &known, &mut rows)).transpose()?;
+            balance::replace(maker, &mut rows)?;
             let seconds = start.elapsed().as_secs_f64();
-            Ok(Discretization { gradients, ..assemble(problem, maker.unknowns, &known, &rows, seconds)? })
+            let corners = (D == 2).then(|| maker.vertices.corners.clone());
+            Ok(Discretization {
+                gradients,
+                corners,
+                ..assemble(problem, maker.unknowns, &known, &rows, seconds)?
+            })
         })
     }
 
@@ -173,6 +181,7 @@ fn assemble<const D: usize>(
     let kinds: Vec<RowKind> = (0..n)
         .map(|i| match row_of[i] {
             None => RowKind::Dirichlet,
+            Some(row) if row.balanced => RowKind::Conservative,
             Some(row) if row.crosses => RowKind::Constrained,
             Some(_) if problem.cloud.is_boundary(i) => RowKind::StrongBoundary,
             Some(_) => RowKind::Strong,
@@ -194,7 +203,7 @@ fn assemble<const D: usize>(
             out.add_to_row_sum(row.mass.iter().sum());
         })
     });
-    let constants = if unknowns.constants() == 0 {
+    let constants = if unknowns.constants() == 0 && !unknowns.any_held() {
         None
     } else {
         let mut columns = vec![Vec::new(); unknowns.constants()];
@@ -208,7 +217,8 @@ fn assemble<const D: usize>(
     let counts = Counts {
         stencils: rows.len(),
         enlarged: rows.iter().filter(|row| row.enlarged).count(),
-        constrained: rows.iter().filter(|row| row.crosses).count(),
+        constrained: rows.iter().filter(|row| row.crosses && !row.balanced).count(),
+        cells: rows.iter().filter(|row| row.balanced).count(),
         ..Counts::default()
     };
     let volumes = (0..n).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect();

@@ -31,6 +31,17 @@ pub enum Form {
     Trefftz,
 }
 
+/// Which nodes have the balance of heat over their cell for a row, where there is a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Conservation {
+    /// None: their values are what others predict.
+    None,
+    /// Those whose stencils cross an interface.
+    Crossing,
+    /// All nodes whose value is not prescribed.
+    All,
+}
+
 /// Parameters of the sharp method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharpParams {
@@ -48,6 +59,8 @@ pub struct SharpParams {
     pub form: Form,
     /// Degree of the polynomials that sources are fitted by in Trefftz's form; `None` for one that suits the order.
     pub source_degree: Option<usize>,
+    /// Which nodes have a balance for a row; in the plane, and in steady problems.
+    pub conservation: Conservation,
     /// The equation has a `du/dt`: rows get a mass.
     pub unsteady: bool,
     /// Keep the gradients at the nodes with the rows, from the same factors: else every stencil is factored again where they are
@@ -65,6 +78,7 @@ impl Default for SharpParams {
             equation_weight: 100.0,
             form: Form::Trefftz,
             source_degree: None,
+            conservation: Conservation::Crossing,
             unsteady: false,
             keep_gradients: false,
         }

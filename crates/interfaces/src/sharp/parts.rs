@@ -195,23 +195,32 @@ impl<const D: usize> Parts<D> {
             let basis = if solved.is_some() { &maker.harmonic_basis } else { &maker.complete_basis };
             let open = maker.rates.is_some() && is_softer(maker, stencil, place);
             self.columns += basis.len() + usize::from(open);
-            self.parts[place] =
-                Part { equation: solved.unwrap_or_default(), omega, loudness: 1.0, scale, first_column, open };
+            self.parts[place] = Part {
+                equation: solved.unwrap_or_default(),
+                omega,
+                loudness: 1.0,
+                scale,
+                first_column,
+                open,
+            };
         }
     }
 
     fn prepare_at_vertex(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>, vertex: usize) {
         let functions = maker.vertices.get(vertex);
         for place in 0..stencil.parts.len() {
-            let (loudness, scale) = (omega(maker, stencil, place), maker.unknowns.scale[stencil.parts[place] as usize]);
+            let (loudness, scale) =
+                (omega(maker, stencil, place), maker.unknowns.scale[stencil.parts[place] as usize]);
             self.parts[place] =
                 Part { equation: Equation::Vertex, omega: 1.0, loudness, scale, ..Part::default() };
         }
         self.columns = functions.columns();
         let points = maker.problem.cloud.points();
-        let reach = stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(functions.distance(&points[j as usize])));
+        let reach =
+            stencil.nodes.iter().fold(0.0_f64, |m, &j| m.max(functions.distance(&points[j as usize])));
         let scale = |place: usize| maker.unknowns.scale[stencil.parts[place] as usize];
-        let softest_first = (0..stencil.parts.len()).min_by(|&a, &b| scale(a).total_cmp(&scale(b)).then(a.cmp(&b)));
+        let softest_first =
+            (0..stencil.parts.len()).min_by(|&a, &b| scale(a).total_cmp(&scale(b)).then(a.cmp(&b)));
         let reference = softest_first.filter(|_| !functions.is_held());
         let given = [(0.0, [0.0; D]); 2];
         let (center, radius, parts) = (stencil.center, stencil.radius, stencil.parts.clone());

@@ -14,6 +14,9 @@ pub(super) struct Values<'a> {
     rates: &'a [f64],
 }
 
+/// Points a node from which on its fit serves them.
+const SHARED: usize = 2;
+
 /// Whose fit a point belongs to.
 #[derive(Debug, Clone, Copy)]
 struct Owner {
@@ -146,19 +149,19 @@ impl<const D: usize> Maker<'_, D> {
     }
 
     /// Values and gradients at points: a fit round each of a few, and the fits of the nodes nearest to many, so that a
-    /// picture takes no longer than the rows did.
+    /// picture takes no longer than the rows did, nor the points of a surface longer than the nodes along it.
     pub(super) fn samples(&self, points: &[[f64; D]], values: &Values<'_>) -> Vec<Option<Sample<D>>> {
         let owners = parallel::map(points.len(), |k| self.owner(&points[k]));
-        // The polynomials of rates are at hand for a functional only.
-        if points.len() <= self.problem.cloud.len() || !values.rates.is_empty() {
-            return parallel::map_with(points.len(), Scratch::default, |scratch, k| {
-                self.sample(&points[k], owners[k]?, values, scratch)
-            });
-        }
         let node = |k: &usize| owners[*k].map(|owner| owner.node);
         let mut order: Vec<usize> = (0..points.len()).filter(|k| owners[*k].is_some()).collect();
         order.sort_by_key(node);
         let groups: Vec<&[usize]> = order.chunk_by(|a, b| node(a) == node(b)).collect();
+        // The polynomials of rates are at hand for a functional only.
+        if order.len() < SHARED * groups.len() || !values.rates.is_empty() {
+            return parallel::map_with(points.len(), Scratch::default, |scratch, k| {
+                self.sample(&points[k], owners[k]?, values, scratch)
+            });
+        }
         let found = parallel::map_with(groups.len(), Scratch::default, |scratch, g| {
             let members = groups[g].iter().filter_map(|&k| Some((points[k], owners[k]?)));
             self.sample_group(&members.collect::<Vec<_>>(), values, scratch)

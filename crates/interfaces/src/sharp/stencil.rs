@@ -95,9 +95,8 @@ impl<const D: usize> Stencil<D> {
             self.nodes.retain(|&j| vertices.get(vertex).reaches(&points[j as usize]));
             self.nodes.truncate(count);
             let farthest = self.nodes.last().map(|&j| &points[j as usize]);
-            self.radius = farthest.map_or(0.0, |x| {
-                (0..D).map(|k| (x[k] - center[k]).powi(2)).sum::<f64>().sqrt()
-            });
+            self.radius =
+                farthest.map_or(0.0, |x| (0..D).map(|k| (x[k] - center[k]).powi(2)).sum::<f64>().sqrt());
         }
         if heard == Heard::OwnPart {
             self.nodes.retain(|&j| unknowns.part[j as usize] == own);

@@ -3,6 +3,7 @@
 use meshless_sparse::{DifferenceMatrix, Split};
 
 use super::connected::ConnectedParts;
+use super::held::Held;
 use super::interface::InterfacePoints;
 use crate::system::FloatingParts;
 use crate::{MethodError, Problem};
@@ -15,13 +16,15 @@ pub(super) struct Unknowns {
     pub(super) part: Vec<u32>,
     /// Scale `s` of every part.
     pub(super) scale: Vec<f64>,
-    /// What is known of its constant: where u jumps between parts that float together, it jumps by so much on the average. Divided
+    /// What is known of its constant: the value that holds a stiff part; and where u jumps between parts that float together, it jumps by so much on the average. Divided
     /// by a small `s`, in `w`, the jump would take the digits of the flux.
     pub(super) offset: Vec<f64>,
     /// Label of every part.
     pub(super) label: Vec<u16>,
     /// The constants of every part: cluster, factor.
     chain: Vec<Vec<(u32, f64)>>,
+    /// Whether some parts have a scale and no constant to be solved for.
+    held: bool,
 }
 
 impl Unknowns {
@@ -44,7 +47,7 @@ impl Unknowns {
             list.sort_unstable();
             list.dedup();
         });
-        let parts = FloatingParts::find(problem, graph, touching);
+        let parts = FloatingParts::find(problem, graph, touching.clone());
         let label = parts.graph.components().iter().map(|c| c.label).collect();
         let mut scale = vec![1.0; count];
         let mut chain = vec![Vec::new(); count];
@@ -59,13 +62,27 @@ impl Unknowns {
             }
         }
         let floats = |part: u32| with_offsets && !chain[part as usize].is_empty();
-        let offset = offsets(count, interfaces, floats);
-        Self { parts, part, scale, offset, label, chain }
+        let mut offset = offsets(count, interfaces, floats);
+        let mut held = false;
+        if with_offsets {
+            let floats = |part: usize| !chain[part].is_empty();
+            let levels = Held::find(problem, &part, &touching, interfaces, &scale, floats);
+            for (part, (level, s)) in levels.parts.into_iter().enumerate().filter_map(|(p, l)| Some((p, l?)))
+            {
+                (offset[part], scale[part], held) = (level, s, true);
+            }
+        }
+        Self { parts, part, scale, offset, label, chain, held }
     }
 
     /// Constants that are unknowns of their own.
     pub(super) fn constants(&self) -> usize {
         self.parts.clusters.len()
+    }
+
+    /// Whether some parts have a scale and no constant to be solved for.
+    pub(super) fn any_held(&self) -> bool {
+        self.held
     }
 
     /// What the constants add to u in one part, less what they add in another: constant, factor. Those that both have alike do
@@ -81,7 +98,8 @@ impl Unknowns {
 
     /// The change of unknowns for a matrix whose rows act on `w`, over all nodes.
     pub(super) fn split(&self, rows: &DifferenceMatrix) -> Result<Split, MethodError> {
-        Ok(Split::from_clusters(rows, &self.part, self.scale.len(), &self.parts.clusters)?)
+        let split = Split::from_clusters(rows, &self.part, self.scale.len(), &self.parts.clusters)?;
+        Ok(split.with_group_scales(&self.scale)?)
     }
 }
 

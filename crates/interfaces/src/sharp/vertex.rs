@@ -11,7 +11,9 @@ use super::params::{Form, SharpParams};
 use super::particular::Particular;
 use super::parts::Row;
 use super::unknowns::Unknowns;
-use crate::corners::{Corner, Local, LocalSolution, Monomial, Obstacle, Scales, in_space, local_problems};
+use crate::corners::{
+    Corner, CornerData, Local, LocalSolution, Monomial, Obstacle, Scales, in_space, local_problems,
+};
 use crate::{Field, Problem};
 
 /// How far from a vertex fits take its functions: this many spacings for each degree of the polynomials that take over there.
@@ -21,12 +23,24 @@ const ZONE: f64 = 2.0;
 /// are where other things are.
 const SHARE_OF_CLEAR: f64 = 0.5;
 
+/// Exponents from here on leave so little that polynomials without a balance do.
+const SEVERE: f64 = 2.0;
+
+/// Where a zone is narrower than it should be, what lies round it is balanced up to this many times as far as it should reach.
+const BEYOND: f64 = 2.0;
+
 /// Nodes within the clear distance for each function.
 const NODES_PER_FUNCTION: f64 = 1.5;
 
 /// The polynomial that stands for a source round a vertex has this many degrees more than those of a fit, up to the highest.
 const SOURCE_DEGREES_BEYOND: usize = 4;
 const HIGHEST_SOURCE_DEGREE: usize = 14;
+
+/// Zones that are tried, over the widest one, until the data are polynomials to this part of their size; a smaller one has to be better
+/// by a factor.
+const SHARES_OF_ZONE: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
+const DATA_TOLERANCE: f64 = 1e-10;
+const WORTH_LESS: f64 = 0.1;
 
 /// Distance from a vertex, over the clear one, below which a node is there.
 const AT_VERTEX: f64 = 1e-9;
@@ -55,6 +69,8 @@ pub(super) struct Vertex {
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     served: Vec<Vertex>,
+    /// Places and distances within which polynomials have to do although the solution is singular.
+    unserved: Vec<([f64; 2], f64)>,
     /// Every vertex whose solution is no polynomial.
     pub(super) corners: Vec<Corner>,
 }
@@ -75,24 +91,49 @@ impl Vertices {
         }
         let degree = params.degree();
         let mut all = Self::default();
-        let mut source = SourcePolynomials { degree: (degree + SOURCE_DEGREES_BEYOND).min(HIGHEST_SOURCE_DEGREE), made: None };
-        for local in local_problems(problem, degree as f64 + AT_VERTEX) {
-            let (at, exponent) = (local.at.to_vec(), local.broken_exponent());
-            let report = |exponent: f64, obstacle: Option<Obstacle>| Corner { at: at.clone(), exponent, obstacle };
+        let mut source = SourcePolynomials {
+            degree: (degree + SOURCE_DEGREES_BEYOND).min(HIGHEST_SOURCE_DEGREE),
+            made: None,
+        };
+        let data = CornerData::from(problem);
+        for local in local_problems(&data, degree as f64 + AT_VERTEX) {
+            let (at, clear, exponent) = (local.at.to_vec(), local.clear, local.broken_exponent());
+            let report = |exponent: f64, obstacle: Option<Obstacle>| Corner {
+                at: at.clone(),
+                exponent,
+                clear,
+                obstacle,
+            };
+            let spacing = nodes.nearest_one(&in_space(local.at)).map(|j| problem.cloud.spacing()[j as usize]);
+            let wanted = ZONE * degree as f64 * spacing.unwrap_or(0.0);
             match Vertex::new(problem, params, unknowns, nodes, local.clone(), &mut source) {
                 Ok(vertex) => {
-                    if let Some(power) = vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64) {
+                    if let Some(power) =
+                        vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64)
+                    {
+                        if vertex.zone < wanted && power < SEVERE {
+                            all.unserved.push((local.at, BEYOND * wanted));
+                        }
                         all.corners.push(report(power, None));
                         all.served.push(vertex);
                     }
                 }
                 Err(obstacle) => {
-                    let power = crate::corners::broken_power(problem, &local, params.order);
+                    let power = crate::corners::broken_power(&data, &local, params.order);
+                    if power.is_some_and(|power| power < SEVERE) {
+                        all.unserved.push((local.at, wanted));
+                    }
                     all.corners.extend(power.map(|power| report(power, Some(obstacle))));
                 }
             }
         }
         all
+    }
+
+    /// Whether polynomials round a point are those of a fit near a singular solution that no functions serve: what they leave is to be
+    /// balanced at least.
+    pub(super) fn leaves_much<const D: usize>(&self, x: &[f64; D]) -> bool {
+        self.unserved.iter().any(|(at, distance)| (x[0] - at[0]).hypot(x[1] - at[1]) < *distance)
     }
 
     /// The vertex whose functions a fit round a point takes, wherever its nodes are.
@@ -102,7 +143,9 @@ impl Vertices {
 
     /// The vertex that a stencil of this radius round a point contains.
     pub(super) fn within<const D: usize>(&self, x: &[f64; D], radius: f64) -> Option<usize> {
-        self.nearest(x).filter(|&(k, distance)| distance <= radius && distance < self.served[k].local.clear).map(|(k, _)| k)
+        self.nearest(x)
+            .filter(|&(k, distance)| distance <= radius && distance < self.served[k].local.clear)
+            .map(|(k, _)| k)
     }
 
     fn nearest<const D: usize>(&self, x: &[f64; D]) -> Option<(usize, f64)> {
@@ -190,28 +233,42 @@ impl Vertex {
                     (0..D).map(|d| (x[d] - middle[d]).powi(2)).sum::<f64>()
                 };
                 let own = found.iter().filter(of_label).filter(in_sector);
-                own.min_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.cmp(b))).map(|&j| unknowns.part[j as usize])
+                own.min_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.cmp(b)))
+                    .map(|&j| unknowns.part[j as usize])
             })
             .collect();
         let parts = parts.ok_or(Obstacle::Spacing)?;
         let spacing = nodes.nearest_one(&at).map_or(local.clear, |j| problem.cloud.spacing()[j as usize]);
         let stencil = (params.stencil_nodes(D) as f64 / std::f64::consts::PI).sqrt() * spacing;
         let widest = (local.clear - stencil).max(SHARE_OF_CLEAR * local.clear);
-        let zone = (ZONE * params.degree() as f64 * spacing).min(widest);
-        let radius = (zone + 2.0 * stencil).min(local.clear);
+        let widest = (ZONE * params.degree() as f64 * spacing).min(widest);
         let of_part = |of: &[f64]| parts.iter().map(|&part| of[part as usize]).collect::<Vec<f64>>();
         let (scale, offset) = (of_part(&unknowns.scale), of_part(&unknowns.offset));
-        let response =
-            |k: usize| -radius * radius / (local.wedge.sectors[k].eta * scale[k]);
-        let sources = (0..parts.len())
-            .map(|k| {
-                let field = problem.materials[local.labels[k] as usize].source.as_ref();
-                source.of(field, (local.at, radius), response(k))
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        // Where data are no polynomials over the whole zone, a smaller one is better.
+        let mut best: Option<(f64, Scales, LocalSolution)> = None;
+        for share in SHARES_OF_ZONE {
+            let zone = share * widest;
+            let radius = (zone + 2.0 * stencil).min(local.clear);
+            let sources = (0..parts.len())
+                .map(|k| {
+                    let field = problem.materials[local.labels[k] as usize].source.as_ref();
+                    let response = -radius * radius / (local.wedge.sectors[k].eta * scale[k]);
+                    source.of(field, (local.at, radius), response)
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            let scales = Scales { scale: scale.clone(), offset: offset.clone(), radius, sources };
+            let solution = local.solve(&CornerData::from(problem), &scales, params.degree())?;
+            let better = best.as_ref().is_none_or(|(.., known)| solution.doubt < WORTH_LESS * known.doubt);
+            if better {
+                best = Some((zone, scales, solution));
+            }
+            if best.as_ref().is_some_and(|(.., known)| known.doubt <= known.size() * DATA_TOLERANCE) {
+                break;
+            }
+        }
+        let (zone, scales, solution) = best.ok_or(Obstacle::Data)?;
+        let response = |k: usize| -scales.radius * scales.radius / (local.wedge.sectors[k].eta * scale[k]);
         let units = (0..parts.len()).map(|k| square(0.25 * response(k))).collect();
-        let scales = Scales { scale, offset, radius, sources };
-        let solution = local.solve(problem, &scales, params.degree())?;
         let (held, ambiguous) = (local.wedge.is_held(), solution.value_depends_on_direction());
         Ok(Self { local, solution, scales, units, parts, zone, held, ambiguous })
     }
@@ -280,7 +337,8 @@ impl Vertex {
             given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
         }
         let xi = [r * cos / radius, r * sin / radius];
-        for (which, polynomial) in [&self.scales.sources[sector], &self.units[sector]].into_iter().enumerate() {
+        for (which, polynomial) in [&self.scales.sources[sector], &self.units[sector]].into_iter().enumerate()
+        {
             for &([i, j], factor) in polynomial {
                 let (i, j) = (i32::from(i), i32::from(j));
                 given[which].0 += factor * xi[0].powi(i) * xi[1].powi(j);

@@ -21,7 +21,7 @@ pub(super) fn solve<const D: usize>(
     if up_to_constant {
         super::check_balance(discretization, solved.extra[constants.split.extra()])?;
     }
-    let w = reduced.expand(&solved.values, &problem.dirichlet())?;
+    let w = reduced.expand(&solved.values, &prescribed(problem, constants))?;
     let mut u = constants.split.recover(&w, &solved.extra)?;
     u.iter_mut().zip(&constants.offsets).for_each(|(u, offset)| *u += offset);
     if up_to_constant {
@@ -40,13 +40,21 @@ pub(super) fn solve<const D: usize>(
     })
 }
 
+/// The prescribed values in the unknowns of the rows: none of their nodes has a constant that is solved for.
+fn prescribed<const D: usize>(problem: &Problem<'_, D>, constants: &SplitRows) -> Vec<Option<f64>> {
+    let own = |(i, value): (usize, Option<f64>)| {
+        value.map(|value| (value - constants.offsets[i]) / constants.split.scale(i))
+    };
+    problem.dirichlet().into_iter().enumerate().map(own).collect()
+}
+
 /// The bordered system, and what elimination has left of the rows.
 pub(super) fn bordered<const D: usize>(
     problem: &Problem<'_, D>,
     discretization: &Discretization,
     constants: &SplitRows,
 ) -> Result<(Bordered, Reduced), MethodError> {
-    let known = problem.dirichlet();
+    let known = prescribed(problem, constants);
     let reduced = discretization.rows.eliminate(&known, &discretization.rhs)?;
     let system = match problem.is_anchored() {
         true => anchored(reduced.clone(), constants, known.len())?,

@@ -19,6 +19,7 @@ mod particle_difference;
 mod phase_field;
 mod reaction;
 mod sharp;
+mod sharp_balance;
 mod sharp_time;
 mod slits;
 mod support;

@@ -10,6 +10,9 @@ use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
 /// How far from an edge between pieces of the boundary the condition on either is told, in spacings.
 const BESIDE: f64 = 1e-5;
 
+/// What of the depth that a step into a re-entrant corner has counts as inside of the domain: on the other side it would be none.
+const INSIDE: f64 = 0.1;
+
 /// The conditions in the order of the scene: the first whose face and `where` match counts.
 pub(crate) struct Boundary<const D: usize> {
     entries: Vec<Entry<D>>,
@@ -51,7 +54,7 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// Which entry of the scene holds on a face at a point.
-    fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
+    pub(crate) fn entry(&self, face: FaceId, x: &[f64; D]) -> Option<usize> {
         self.entries.iter().position(|entry| {
             entry.face.is_none_or(|f| f == face)
                 && entry.place.as_ref().is_none_or(|place| holds(place.at(x)))
@@ -76,13 +79,18 @@ impl<const D: usize> Boundary<D> {
     /// # Errors
     /// What no node hears of: an electrode narrower than the spacing, a part that an entry before covers, a `where` or a hole that
     /// is elsewhere.
-    pub(crate) fn check_is_met(&self, scene: &Scene, cloud: &Cloud<D>) -> Result<(), Error> {
+    pub(crate) fn check_is_met(
+        &self,
+        scene: &Scene,
+        domain: &Domain<D>,
+        cloud: &Cloud<D>,
+    ) -> Result<(), Error> {
         let mut met = vec![false; self.entries.len()];
         let mut faces = vec![false; scene.faces().len()];
         for node in cloud.boundary() {
             for touch in &node.touches {
                 faces[touch.face.0 as usize] = true;
-                if let Some(index) = self.entry(touch.face, &beside_edges(cloud, node, touch)) {
+                if let Some(index) = self.entry(touch.face, &beside_edges(domain, cloud, node, touch)) {
                     met[index] = true;
                 }
             }
@@ -104,19 +112,24 @@ impl<const D: usize> Boundary<D> {
         Err(Error::TooCoarse(Box::new(spec.place.error(message, help))))
     }
 
-    /// The entry that holds on a face at a point, and what it says there.
-    pub(crate) fn entry_at(&self, face: FaceId, x: &[f64; D]) -> Option<(usize, Condition)> {
-        self.entry(face, x).map(|index| (index, self.entries[index].kind.at(x)))
+    /// What an entry of the scene says at a point.
+    pub(crate) fn of_entry(&self, index: usize, x: &[f64; D]) -> Condition {
+        self.entries[index].kind.at(x)
     }
 
     /// The conditions of every boundary node, one for each of its faces, checked.
-    pub(crate) fn at_nodes(&self, scene: &Scene, cloud: &Cloud<D>) -> Result<Vec<Vec<Condition>>, Error> {
+    pub(crate) fn at_nodes(
+        &self,
+        scene: &Scene,
+        domain: &Domain<D>,
+        cloud: &Cloud<D>,
+    ) -> Result<Vec<Vec<Condition>>, Error> {
         let mut all = Vec::with_capacity(cloud.boundary().len());
         for node in cloud.boundary() {
             let x = &cloud.points()[node.node as usize];
             let mut conditions = Vec::with_capacity(node.touches.len());
             for touch in &node.touches {
-                let place = &beside_edges(cloud, node, touch);
+                let place = &beside_edges(domain, cloud, node, touch);
                 self.check_places(scene, touch.face, place)?;
                 let index = self
                     .entry(touch.face, place)
@@ -132,16 +145,25 @@ impl<const D: usize> Boundary<D> {
 }
 
 /// Where a node is, as its place on one of several pieces of the boundary is told: a little away from the edge between them. A
-/// `where` that holds on the one piece alone, or data that jump at the edge, then say nothing of the others.
-fn beside_edges<const D: usize>(cloud: &Cloud<D>, node: &BoundaryNode<D>, touch: &Touch<D>) -> [f64; D] {
+/// `where` that holds on the one piece alone, or data that jump at the edge, then say nothing of the others. A piece goes on against the
+/// normal of the other one, at a re-entrant edge along it.
+fn beside_edges<const D: usize>(
+    domain: &Domain<D>,
+    cloud: &Cloud<D>,
+    node: &BoundaryNode<D>,
+    touch: &Touch<D>,
+) -> [f64; D] {
     let i = node.node as usize;
-    let mut x = cloud.points()[i];
-    let others = node.touches.iter().filter(|other| other.normal != touch.normal);
-    for other in others {
+    let at = cloud.points()[i];
+    let reach = BESIDE * cloud.spacing()[i];
+    let mut x = at;
+    for other in node.touches.iter().filter(|other| other.normal != touch.normal) {
         let along: f64 = (0..D).map(|k| other.normal[k] * touch.normal[k]).sum();
-        for (k, x) in x.iter_mut().enumerate() {
-            *x -= BESIDE * cloud.spacing()[i] * (other.normal[k] - along * touch.normal[k]);
-        }
+        let step: [f64; D] = std::array::from_fn(|k| -reach * (other.normal[k] - along * touch.normal[k]));
+        let depth = step.iter().map(|s| s * s).sum::<f64>() / reach;
+        let is_inside = domain.distance_estimate(&std::array::from_fn(|k| at[k] + step[k])) < -INSIDE * depth;
+        let sign = if is_inside { -1.0 } else { 1.0 };
+        x.iter_mut().zip(step).for_each(|(x, s)| *x += sign * s);
     }
     x
 }

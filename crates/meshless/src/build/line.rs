@@ -1,7 +1,7 @@
 //! A line through a domain, in cells: what heat meets on its way, known without a cloud.
 
 use meshless_geometry::{Domain, FaceId, RegionMap};
-use meshless_interfaces::Condition;
+use meshless_interfaces::{BoundaryData, Condition};
 
 use super::conditions::Boundary;
 use super::fields::{field, materials};
@@ -124,8 +124,7 @@ impl<const D: usize> Line<D> {
         let (materials, boundary) = (materials::<D>(scene), Boundary::new(scene, &self.domain));
         let cells =
             || self.centres.iter().zip(&self.labels).map(|(x, &label)| (x, &materials[label as usize]));
-        let at_end =
-            |(x, face): &([f64; D], FaceId)| boundary.entry_at(*face, x).map(|(_, condition)| condition);
+        let at_end = |(x, face): &([f64; D], FaceId)| boundary.condition(*face, x);
         LineData {
             diffusivity: cells().map(|(x, material)| material.diffusivity.at(x)).collect(),
             source: cells().map(|(x, material)| material.source.as_ref().map_or(0.0, |f| f.at(x))).collect(),

@@ -2,6 +2,7 @@
 
 mod checks;
 mod conditions;
+mod corners;
 mod fields;
 mod line;
 mod mesh;
@@ -14,6 +15,7 @@ mod survey;
 
 pub(crate) use checks::{check_interfaces_touch, check_regions_are_met};
 pub(crate) use conditions::{Boundary, missing_condition};
+pub(crate) use corners::singular_corners;
 pub(crate) use fields::{
     exact, field, jump_rates, jumps, materials, nodal_diffusivity, nodal_source, nodal_vorticity,
 };

@@ -130,6 +130,7 @@ pub(crate) fn layout(scene: &Scene) -> Layout {
 pub(crate) fn explain_cloud(scene: &Scene, error: GeometryError) -> Error {
     match error {
         GeometryError::InvalidSpacing { .. }
+        | GeometryError::VanishingSpacing { .. }
         | GeometryError::TooManyNodes { .. }
         | GeometryError::GradedLattice { .. } => {
             scene.error_at(&scene.points.spacing, error.to_string(), "").into()

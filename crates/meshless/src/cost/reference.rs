@@ -129,7 +129,7 @@ impl<const D: usize> Finest<D> {
         let thin_layer = thin_layer(&scene, &plan, &solved.discrete.problem())?;
         let contacts = contacts(&scene, &solved.discrete.problem());
         let unresolved = Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts };
-        let own_error = estimate(&scene, &plan, &solved, &unresolved)?.0.l2;
+        let own_error = estimate(&scene, &plan, &solved, &unresolved)?.estimate.l2;
         Ok(Self { solved, plan, own_error })
     }
 

@@ -79,7 +79,7 @@ impl<const D: usize> Discrete<D> {
         let start = Instant::now();
         let labels = if plan.runs(Stage::Regions) {
             progress.stage(Stage::Regions);
-            let labels = given.unwrap_or_else(|| regions.labels(&cloud));
+            let labels = given.unwrap_or_else(|| regions.labels_within(&domain, &cloud));
             build::check_regions_are_met(scene, &labels)?;
             build::check_interfaces_touch(scene, &labels, &lists)?;
             labels
@@ -102,8 +102,8 @@ impl<const D: usize> Discrete<D> {
             .then(|| build::nodal_source(scene, &materials, cloud.points(), &labels))
             .transpose()?;
         let boundary = Boundary::new(scene, &domain);
-        let conditions = boundary.at_nodes(scene, &cloud)?;
-        boundary.check_is_met(scene, &cloud)?;
+        let conditions = boundary.at_nodes(scene, &domain, &cloud)?;
+        boundary.check_is_met(scene, &domain, &cloud)?;
         let (jumps, jump_rates) = (build::jumps::<D>(scene), build::jump_rates::<D>(scene));
         let slits = build::slits(scene, &domain)?;
         seconds.stencils = start.elapsed().as_secs_f64();
@@ -135,7 +135,7 @@ impl<const D: usize> Discrete<D> {
             .then(|| build::nodal_source(scene, &self.materials, points, labels))
             .transpose()?;
         self.boundary = Boundary::new(scene, &self.domain);
-        self.conditions = self.boundary.at_nodes(scene, &self.cloud)?;
+        self.conditions = self.boundary.at_nodes(scene, &self.domain, &self.cloud)?;
         self.jumps = build::jumps::<D>(scene);
         self.jump_rates = build::jump_rates::<D>(scene);
         self.slits = build::slits(scene, &self.domain)?;
@@ -145,7 +145,7 @@ impl<const D: usize> Discrete<D> {
     /// The values that a scene prescribes at the nodes.
     pub(super) fn prescribed_at(&self, scene: &Scene) -> Result<Vec<Option<f64>>, Error> {
         let boundary = Boundary::new(scene, &self.domain);
-        let conditions = boundary.at_nodes(scene, &self.cloud)?;
+        let conditions = boundary.at_nodes(scene, &self.domain, &self.cloud)?;
         Ok(Problem { conditions: &conditions, ..self.problem() }.dirichlet())
     }
 

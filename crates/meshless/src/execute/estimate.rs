@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use meshless_interfaces::{Sampler, SystemParams, solve};
+use meshless_interfaces::{Sampler, SystemParams, SystemSolution, solve};
 use rayon::prelude::*;
 
 use super::{Silent, Solved, solve_in};
@@ -58,6 +58,28 @@ impl ContactReport {
     }
 }
 
+/// An estimate with what it was made from.
+pub(crate) struct Estimated {
+    pub(crate) estimate: Estimate,
+    /// Where the method is compared with itself on the same cloud: `u` minus the finer solution at every node.
+    pub(crate) differences: Option<Vec<f64>>,
+    /// That finer method, and its solution.
+    pub(crate) finer: Option<(MethodParams, SystemSolution)>,
+}
+
+impl Estimated {
+    /// None, for a reason.
+    pub(crate) fn none(why_not: String) -> Self {
+        Estimate { why_not: Some(why_not), ..Estimate::default() }.into()
+    }
+}
+
+impl From<Estimate> for Estimated {
+    fn from(estimate: Estimate) -> Self {
+        Self { estimate, differences: None, finer: None }
+    }
+}
+
 /// The estimate of a method's own choice, and where the method is compared with itself on the same cloud, `u` minus the finer
 /// solution at every node.
 pub(crate) fn estimate<const D: usize>(
@@ -65,19 +87,19 @@ pub(crate) fn estimate<const D: usize>(
     plan: &Plan,
     solved: &Solved<D>,
     unresolved: &Unresolved<'_>,
-) -> Result<(Estimate, Option<Vec<f64>>), Error> {
+) -> Result<Estimated, Error> {
     if let Some(why_not) = unresolved.why_not() {
-        return Ok((Estimate { why_not: Some(why_not), ..Estimate::default() }, None));
+        return Ok(Estimated::none(why_not));
     }
-    let (estimate, differences) = match plan.finer() {
-        Some(finer) => against_finer(scene, plan, &finer, solved)?,
-        None => (against_coarser(scene, plan, solved)?, None),
+    let estimated = match plan.finer() {
+        Some(finer) => against_finer(scene, plan, finer, solved)?,
+        None => against_coarser(scene, plan, solved)?.into(),
     };
-    if estimate.l2.is_some_and(|l2| !l2.is_finite()) {
+    if estimated.estimate.l2.is_some_and(|l2| !l2.is_finite()) {
         let why_not = "the squares of u are beyond double precision: take other units".to_owned();
-        return Ok((Estimate { why_not: Some(why_not), ..Estimate::default() }, differences));
+        return Ok(Estimated { differences: estimated.differences, ..Estimated::none(why_not) });
     }
-    Ok((estimate, differences))
+    Ok(estimated)
 }
 
 /// Norms over all nodes and over those of each region.
@@ -104,7 +126,7 @@ impl Norms {
         Estimate {
             l2: Some(self.whole.l2() / times),
             regions: if scene.regions.len() > 1 { regions.collect() } else { BTreeMap::new() },
-            why_not: None,
+            ..Estimate::default()
         }
     }
 }
@@ -112,9 +134,9 @@ impl Norms {
 fn against_finer<const D: usize>(
     scene: &Scene,
     plan: &Plan,
-    finer: &MethodParams,
+    finer: MethodParams,
     solved: &Solved<D>,
-) -> Result<(Estimate, Option<Vec<f64>>), Error> {
+) -> Result<Estimated, Error> {
     let problem = solved.discrete.problem();
     let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
     let method = finer.build::<D>();
@@ -123,8 +145,7 @@ fn against_finer<const D: usize>(
         Ok(better) => better,
         Err(error) => {
             let error = solved.discrete.explain(scene, error);
-            let why_not = Some(format!("no solution of a higher order: {error}"));
-            return Ok((Estimate { why_not, ..Estimate::default() }, None));
+            return Ok(Estimated::none(format!("no solution of a higher order: {error}")));
         }
     };
     let measures = solved.discrete.measures();
@@ -141,7 +162,8 @@ fn against_finer<const D: usize>(
     {
         norms.add(label, measure, difference, better);
     }
-    Ok((norms.estimate(scene, 1.0), Some(differences)))
+    let (estimate, differences) = (norms.estimate(scene, 1.0), Some(differences));
+    Ok(Estimated { estimate, differences, finer: Some((finer, better)) })
 }
 
 fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>) -> Result<Estimate, Error> {

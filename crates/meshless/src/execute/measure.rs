@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use meshless_interfaces::Sample;
 
+use super::Solved;
 use super::discrete::Exact;
-use super::{Solved, fluxes};
+use super::samples::samples;
 use crate::Error;
 use crate::norms::ErrorNorms;
 use crate::plan::Plan;
@@ -80,7 +81,7 @@ pub(super) fn probes<const D: usize>(
     }
     let problem = solved.discrete.problem();
     let places: Vec<[f64; D]> = scene.probes.iter().map(|probe| std::array::from_fn(|k| probe[k])).collect();
-    let values = fluxes::samples(plan, solved, &places)?;
+    let values = samples(&plan.method.params, &problem, &solved.system, &places)?;
     let tolerance = 1e-9 * problem.domain.bounds().diameter();
     let value = |(at, sample): (&[f64; D], Option<Sample<D>>)| {
         let inside = problem.domain.contains(at, tolerance);

@@ -1,15 +1,19 @@
 //! From a plan to a solution, stage by stage; what the plan skips is not built.
 
+mod balance;
 mod contacts;
+mod corners;
 mod discrete;
 mod estimate;
 mod fluxes;
 mod free_space;
+mod honest;
 mod linear;
 mod measure;
 mod picture;
 mod refine;
 mod reproduce;
+mod samples;
 mod summary;
 mod thin_layer;
 mod unsteady;
@@ -22,12 +26,13 @@ use meshless_interfaces::{
 
 use crate::build::Boundary;
 use crate::plan::{MethodParams, Plan, Stage};
-use crate::report::{Estimate, Report, Seconds};
+use crate::report::{Report, Seconds};
 use crate::scene::Scene;
 use crate::{Error, NodalField, ParticleField};
+use balance::Ledger;
 pub(crate) use contacts::contacts;
 pub(crate) use discrete::{Discrete, Exact};
-pub(crate) use estimate::{Unresolved, estimate};
+pub(crate) use estimate::{Estimated, Unresolved, estimate};
 pub use linear::{PseudoTimeCost, linear_system, pseudo_time};
 pub use picture::Picture;
 pub use reproduce::{Reproduction, reproduce};
@@ -223,18 +228,46 @@ fn execute_in<const D: usize>(
         .runs(Stage::Diagnosis)
         .then(|| diagnose_nodes(&problem, &solved.discretization, plan.method.params.order()));
     let probes = measure::probes(scene, plan, &solved)?;
-    let fluxes = plan.runs(Stage::Fluxes).then(|| fluxes::fluxes(scene, plan, &solved)).transpose()?;
     seconds.post = post.elapsed().as_secs_f64();
+    let before = Instant::now();
+    let ledger = if plan.runs(Stage::Balance) {
+        progress.stage(Stage::Balance);
+        let ledger = Ledger::new(scene, plan, &solved)?;
+        let flows = ledger.flows(&plan.method.params, &problem, &solved.system)?;
+        Some((ledger, flows))
+    } else {
+        None
+    };
+    let balance = ledger.as_ref().map(|(ledger, flows)| ledger.report(flows));
+    let fluxes = match (&ledger, &balance) {
+        (Some((_, flows)), Some(balance)) if plan.runs(Stage::Fluxes) => Some(fluxes::fluxes(flows, balance)),
+        _ => None,
+    };
+    seconds.balance = before.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
     let before = Instant::now();
     let thin_layer = thin_layer(scene, plan, &problem)?;
     let contacts = contacts(scene, &problem);
-    let (estimate, differences) = if plan.runs(Stage::Estimate) {
+    let corners = corners::found(plan, &problem, &solved.discretization);
+    let Estimated { mut estimate, differences, finer } = if plan.runs(Stage::Estimate) {
         estimate(whole, plan, &solved, &Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts })?
     } else {
-        (Estimate { why_not: Some("not asked for".to_owned()), ..Estimate::default() }, None)
+        Estimated::none("not asked for".to_owned())
     };
     seconds.estimate = before.elapsed().as_secs_f64();
+    let before = Instant::now();
+    if let Some((ledger, flows)) =
+        ledger.as_ref().filter(|(l, flows)| honest::suspects(scene, l, flows, &estimate))
+    {
+        let other = match &finer {
+            Some((method, system)) => Some(ledger.flows(method, &problem, system)?),
+            None => ledger.other_flows(&plan.method.params, &problem, &solved.system)?,
+        };
+        let reasons = [honest::by_balance(scene, ledger, flows, other.as_ref(), &estimate)];
+        honest::raise(&mut estimate, &reasons);
+    }
+    honest::raise(&mut estimate, &[corners::reason(&problem, &corners)]);
+    seconds.balance += before.elapsed().as_secs_f64();
     let before = Instant::now();
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, plan, &solved)).transpose()?;
     seconds.post += before.elapsed().as_secs_f64();
@@ -243,7 +276,8 @@ fn execute_in<const D: usize>(
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    let report = Report { fallback, thin_layer, contacts, fluxes, ..report };
+    let corners = corners::report(&corners);
+    let report = Report { fallback, thin_layer, contacts, corners, fluxes, balance, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames, particles: None })
 }

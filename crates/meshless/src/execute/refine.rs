@@ -35,6 +35,10 @@ const LEAST_BLIND_RATIO: f64 = 0.2;
 const LEAST_ORDER: f64 = 0.5;
 const ORDER_ABOVE: f64 = 1.0;
 
+/// The order that estimates which the balance has raised must fall at between two clouds; what falls more slowly is not the
+/// spacing's.
+const LEAST_RAISED_ORDER: f64 = 1.5;
+
 /// Solves a scene to the tolerance of its plan.
 pub(super) fn refine(
     scene: &Scene,
@@ -71,8 +75,13 @@ pub(super) fn refine(
                 let estimate = report.estimate.l2;
                 thin = report.thin_layer.clone();
                 let why = report.estimate.why_not.clone();
-                let rung =
-                    Rung { spacing: report.spacing, unknowns: report.unknowns, why, ..Rung::default() };
+                let rung = Rung {
+                    spacing: report.spacing,
+                    unknowns: report.unknowns,
+                    raised_by: report.estimate.raised_by.clone(),
+                    why,
+                    ..Rung::default()
+                };
                 (estimate, rung, Some(solution))
             }
             Err(error) if error.is_too_coarse() => {
@@ -93,6 +102,9 @@ pub(super) fn refine(
                 solution.report.accuracy.iter().flat_map(|a| &a.rungs).map(|r| r.seconds).sum();
             return Ok(solution);
         }
+        if out_of_reach(&rungs, goal) {
+            return Err(unmet(scene, goal, &rungs, refused, thin, None));
+        }
         let unseen = thin.as_ref().filter(|layer| !layer.seen).zip(rungs.last());
         let blind = unseen
             .map(|(layer, rung)| layer.thickness / rung.spacing)
@@ -101,6 +113,19 @@ pub(super) fn refine(
         factor *= next_ratio(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance, blind);
     }
     Err(unmet(scene, goal, &rungs, refused, thin, None))
+}
+
+/// Whether what the balance leaves over falls so slowly that no cloud which is allowed has the tolerance.
+fn out_of_reach(rungs: &[Rung], goal: AccuracyPlan) -> bool {
+    let mut known = rungs.iter().rev().filter(|rung| rung.raised_by.is_some());
+    let (Some(last), Some(before)) = (known.next(), known.next()) else { return false };
+    let (Some(now), Some(then)) = (last.estimate, before.estimate) else { return false };
+    if rungs.last().is_some_and(|rung| rung.raised_by.is_none()) {
+        return false;
+    }
+    let order = (then / now).ln() / (before.spacing / last.spacing).ln();
+    let ratio = (now / (SHARE * goal.tolerance)).powf(1.0 / order.max(LEAST_ORDER));
+    order < LEAST_RAISED_ORDER && last.unknowns as f64 * ratio * ratio > goal.max_nodes
 }
 
 /// The ratio of the next spacing to the last one.
@@ -145,7 +170,12 @@ fn unmet(
         "a relative error of {:.1e} was not reached: the estimate is {estimate:.1e} on {} nodes of spacing {:.3e}",
         goal.tolerance, rung.unknowns, rung.spacing
     );
+    let raised = rungs.last().is_some_and(|rung| rung.raised_by.is_some());
     let help = match (layer, needed) {
+        (None, _) if raised => "what enters and arises is not what leaves (`balance` in the report of a solve at a spacing): the solution is \
+                                singular where interfaces or the boundary have corners, or the method does not conserve there: give a \
+                                spacing and look at the balance, or take the method \"gfdm-conservative\""
+            .to_owned(),
         (Some(layer), _) => layer,
         (None, Some(needed)) => format!(
             "the next cloud would have {needed:.1e} nodes, and {:.0} are allowed: raise `max_nodes`, take a larger \

@@ -47,7 +47,8 @@ impl AccuracyPlan {
         };
         let jumps = survey.has_interface();
         // Fluxes take gradients up to interfaces.
-        if jumps && tolerance >= COARSE && !scene.output.fluxes {
+        // Singular corners take functions of their own.
+        if jumps && tolerance >= COARSE && !scene.output.fluxes && !survey.has_corners(scene) {
             return choice(
                 MethodName::GfdmHybrid,
                 None,

@@ -74,6 +74,10 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
             let (name, why) = at_interfaces(scene);
             (name, why.to_owned())
         }
+        (MethodName::Auto, None) if survey.has_corners(scene) && offered(scene) => (
+            MethodName::Sharp,
+            "the solution is singular at corners: functions of their own there".to_owned(),
+        ),
         (MethodName::Auto, None) => {
             (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned())
         }
@@ -91,16 +95,18 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
 /// interfaces are known roughly only, or u changes with time.
 fn at_interfaces(scene: &Scene) -> (MethodName, &'static str) {
     let labels = scene.is_labelled() || scene.method.options.interfaces == Some(InterfacesName::Labels);
-    let order = scene.method.order;
     if labels {
         (MethodName::GfdmHybrid, "interfaces are known to a share of the spacing only: balances there")
-    } else if scene.time.is_some() && !scene.output.fluxes
-        || order.is_some_and(|order| !Sharp::offers(order, scene.dimension))
-    {
+    } else if scene.time.is_some() && !scene.output.fluxes || !offered(scene) {
         (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere")
     } else {
         (MethodName::Sharp, "something jumps at an interface: one polynomial on each side, joined there")
     }
+}
+
+/// Whether the sharp method has the order that the scene asks for, if it does.
+fn offered(scene: &Scene) -> bool {
+    scene.method.order.is_none_or(|order| Sharp::offers(order, scene.dimension))
 }
 
 /// A method with its parameters as the scene asks for them.
@@ -225,6 +231,12 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     if let Some(constrained) = steps.constrained {
         decide(constrained, Stage::ConstrainedStencils, "nothing jumps anywhere");
     }
+    let functions = matches!(method.params, MethodParams::Sharp(_)) && survey.has_corners(scene);
+    let none = match survey.has(|e| matches!(e, Effect::Corners { .. })) {
+        true => "they serve corners of steady scenes in the plane, with the method \"sharp\"",
+        false => "no corner is known at which the solution is singular",
+    };
+    decide(functions, Stage::CornerFunctions, none);
     decide(steps.selection, Stage::NodeSelection, "the method does not mix rows");
     decide(steps.may_need_cells, Stage::Cells, "no row is conservative");
     decide(true, Stage::Assembly, "");
@@ -239,6 +251,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     if scene.output.fluxes {
         decide(carries_fluxes(survey, method), Stage::Fluxes, "the method has no gradients up to interfaces");
     }
+    decide(true, Stage::Balance, "");
     decide(true, Stage::Estimate, "");
     decide(scene.accuracy.is_some(), Stage::Refinement, "no error to reach is given");
     decide(scene.output.vtu, Stage::Diagnosis, "no field output asks for it");

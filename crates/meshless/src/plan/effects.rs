@@ -6,6 +6,9 @@ use crate::Error;
 use crate::build;
 use crate::scene::{ConditionSpec, ExprField, RegionSpec, Scene};
 
+/// Order below which powers of the distance from a corner count, where the scene names none: that of the sharp method by default.
+const LEAST_ORDER: usize = 4;
+
 /// Something that a scene has and that costs something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effect {
@@ -51,6 +54,13 @@ pub enum Effect {
     },
     /// The spacing depends on position.
     GradedCloud,
+    /// Vertices of interfaces and of the boundary, and in space edges, at which the solution is singular.
+    Corners {
+        /// How many.
+        count: usize,
+        /// The smallest exponent: `u ~ r^exponent`.
+        exponent: f64,
+    },
 }
 
 impl Effect {
@@ -79,6 +89,7 @@ impl Effect {
             Self::CurvedBoundary => "curved boundary",
             Self::Triangles { .. } => "triangulated surface",
             Self::GradedCloud => "graded cloud",
+            Self::Corners { .. } => "corners",
         }
     }
 }
@@ -87,6 +98,7 @@ impl fmt::Display for Effect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DiffusivityJump { contrast } => write!(f, "{} ({contrast:.3e})", self.name()),
+            Self::Corners { count, exponent } => write!(f, "{} ({count}, u ~ r^{exponent:.3})", self.name()),
             Self::Triangles { count, degenerate: 0 } => write!(f, "{} ({count} triangles)", self.name()),
             Self::Triangles { count, degenerate } => {
                 write!(f, "{} ({count} triangles, {degenerate} without extent left out)", self.name())
@@ -147,11 +159,21 @@ impl Survey {
             scene.points.spacing.expr.as_constant().is_none() || scene.points.gaps.is_some(),
             Effect::GradedCloud,
         );
+        let corners =
+            build::singular_corners(&scene.at_time(0.0), scene.method.order.unwrap_or(LEAST_ORDER))?;
+        if let Some(exponent) = corners.iter().map(|corner| corner.exponent).min_by(f64::total_cmp) {
+            effects.push(Effect::Corners { count: corners.len(), exponent });
+        }
         Ok(Self { effects, uniform, contrast })
     }
 
     pub(super) fn has(&self, test: fn(&Effect) -> bool) -> bool {
         self.effects.iter().any(test)
+    }
+
+    /// Whether there are corners that functions can serve: those of a steady scene in the plane.
+    pub(super) fn has_corners(&self, scene: &Scene) -> bool {
+        scene.dimension == 2 && scene.time.is_none() && self.has(|e| matches!(e, Effect::Corners { .. }))
     }
 
     /// Whether anything happens at an interface at all.

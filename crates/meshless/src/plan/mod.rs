@@ -85,6 +85,8 @@ pub enum Stage {
     ConstrainedStencils,
     /// Find the nodes whose rows must be conservative.
     NodeSelection,
+    /// Functions in place of polynomials near corners at which the solution is singular.
+    CornerFunctions,
     /// Voronoi cells of the conservative nodes, and balances over them.
     Cells,
     /// Put the rows together and eliminate prescribed values.
@@ -105,6 +107,8 @@ pub enum Stage {
     Probes,
     /// Fluxes through boundaries and interfaces.
     Fluxes,
+    /// What enters, arises and is stored, and what of that is left over.
+    Balance,
     /// Solve on a coarser cloud to estimate the error.
     Estimate,
     /// Condition, residual and signs of every node's stencil and row.
@@ -128,6 +132,7 @@ impl Stage {
                 | Self::Errors
                 | Self::Probes
                 | Self::Fluxes
+                | Self::Balance
                 | Self::Estimate
                 | Self::Diagnosis
                 | Self::Vtu

@@ -56,8 +56,8 @@ const PRECONDITIONER_SHARE: f64 = 0.15;
 /// Kilobytes a node that factors take, by dimension; twice as many where the steps change them.
 const FACTORS_KILOBYTES: [f64; 3] = [0.5, 6.0, 12.0];
 
-/// Pieces of a surface that fluxes go through, a node of it.
-const FLUX_PIECES: [f64; 3] = [1.0, 12.0, 16.0];
+/// Points of a surface at which the balance takes fluxes, a node of it.
+const FLUX_POINTS: [f64; 3] = [1.0, 4.0, 4.0];
 
 /// Memory of the program itself, in units of 1e6 bytes.
 const BASE_MEMORY_MB: f64 = 10.0;
@@ -81,17 +81,16 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
         once * (matrix_share * time.matrices + SOLVE_SHARE * time.solves) + time.changes * made
     });
     let own = rates.points + rates.neighbors + made + solves;
-    let fluxes = if scene.output.fluxes {
-        flux_fits(unknowns, scene.dimension) / unknowns * stencils(&method.params)
-    } else {
-        0.0
-    };
     // The method at a higher order on the same nodes, or half as many nodes in every direction.
     let finer = method.params.finer(scene.dimension).filter(|_| scene.time.is_none());
     let estimate = match &finer {
         Some(finer) => stencils(finer) + solve,
         None => own * 0.5_f64.powi(scene.dimension as i32),
     };
+    // Fluxes by the method, and by its higher order or other fits.
+    let fits = flux_fits(unknowns, scene.dimension, finer.is_some()) / unknowns;
+    let balance =
+        fits * (rates.stencil.max(stencils(&method.params)) + finer.as_ref().map_or(rates.stencil, stencils));
     // Fields that are kept, and factors.
     let kept = scene.time.as_ref().map_or(0, |time| time.output.len());
     let renewed = if in_time.is_some() { 2.0 } else { 1.0 };
@@ -99,18 +98,17 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
     let kilobytes = rates.kilobytes + factored + 8e-3 * kept as f64;
     Ok(Predicted {
         unknowns,
-        seconds: 1e-6 * (own + fluxes + estimate) * unknowns,
+        seconds: 1e-6 * (own + balance + estimate) * unknowns,
         estimate_seconds: 1e-6 * estimate * unknowns,
         memory_mb: BASE_MEMORY_MB + kilobytes * unknowns / 1e3,
         steps: in_time,
     })
 }
 
-/// Fits that fluxes take: one a piece of the faces and of interfaces of about their extent, or, where these are more than nodes, one a
-/// node beside them.
-fn flux_fits(nodes: f64, dimension: usize) -> f64 {
+/// Fits that fluxes take: one a point of the faces and of interfaces of about their extent, or, for a method whose fits serve many points,
+/// one a node beside them.
+fn flux_fits(nodes: f64, dimension: usize, shared: bool) -> f64 {
     let d = dimension as f64;
     let beside = 4.0 * d * nodes.powf(1.0 - 1.0 / d);
-    let pieces = beside * FLUX_PIECES[dimension - 1];
-    if pieces > nodes { beside.min(nodes) } else { pieces }
+    if shared { beside.min(nodes) } else { beside * FLUX_POINTS[dimension - 1] }
 }

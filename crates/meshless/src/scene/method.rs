@@ -5,7 +5,8 @@ use meshless_expr::nearest_name;
 use super::error::SceneError;
 use super::free_space;
 use super::options::{
-    GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
+    ConservationName, GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName,
+    WedgeName, WeightName,
 };
 use super::reader::{Table, Value};
 use super::spec::{MethodName, MethodSpec, SolverName};
@@ -74,6 +75,13 @@ const KERNELS: [(&str, KernelName); 3] = [
 const SIGMAS: [(&str, SigmaName); 3] =
     [("harmonic", SigmaName::Harmonic), ("arithmetic", SigmaName::Arithmetic), ("sharp", SigmaName::Sharp)];
 
+/// Nodes with balances by name.
+const CONSERVATIONS: [(&str, ConservationName); 3] = [
+    ("none", ConservationName::None),
+    ("crossing", ConservationName::Crossing),
+    ("all", ConservationName::All),
+];
+
 /// Sources at interfaces by name.
 const REACTIONS: [(&str, ReactionName); 2] =
     [("operator", ReactionName::Operator), ("smoothed", ReactionName::Smoothed)];
@@ -112,6 +120,8 @@ const PARTICLE: &[MethodName] = &[MethodName::ParticleDifference];
 const WEDGED: &[MethodName] = &[MethodName::ParticleDifference, MethodName::ParticleDifferenceExtended];
 /// Methods that continue fields beyond interfaces.
 const IMMERSED: &[MethodName] = &[MethodName::ImmersedInterface];
+/// Methods whose fits know interfaces.
+const SHARP: &[MethodName] = &[MethodName::Sharp];
 /// Methods that smear interfaces.
 const REACTION: &[MethodName] = &[MethodName::SurfaceReaction];
 
@@ -119,7 +129,7 @@ const REACTION: &[MethodName] = &[MethodName::SurfaceReaction];
 const KERNEL: &[MethodName] = &[MethodName::SurfaceReaction, MethodName::FreeSpace];
 
 /// Options and the methods that have them.
-const OPTIONS: [(&str, &[MethodName]); 17] = [
+const OPTIONS: [(&str, &[MethodName]); 18] = [
     ("smoothing", STRONG),
     ("log_scaling", STRONG),
     ("correction", STRONG),
@@ -132,6 +142,7 @@ const OPTIONS: [(&str, &[MethodName]); 17] = [
     ("flux_weights", PARTICLE),
     ("visibility", PARTICLE),
     ("ghosts", IMMERSED),
+    ("conservation", SHARP),
     ("kernel", KERNEL),
     ("sigma", KERNEL),
     ("reaction", REACTION),
@@ -212,6 +223,7 @@ fn options(table: &Table<'_>, method: MethodName) -> Result<MethodOptions, Scene
         flux_weights: flag("flux_weights")?,
         visibility: flag("visibility")?,
         ghosts: table.get("ghosts").map(|value| value.one_of(&GHOSTS)).transpose()?,
+        conservation: table.get("conservation").map(|value| value.one_of(&CONSERVATIONS)).transpose()?,
         kernel: of_reaction("kernel").map(|value| value.one_of(&KERNELS)).transpose()?,
         sigma: of_reaction("sigma").map(|value| value.one_of(&SIGMAS)).transpose()?,
         reaction: table.get("reaction").map(|value| value.one_of(&REACTIONS)).transpose()?,

@@ -38,7 +38,8 @@ pub use expression::ExprField;
 pub use free_space::{FreeSpaceSpec, GreenName, ParticlesSpec, SpreadName};
 pub use method::MethodNameError;
 pub use options::{
-    GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName, WedgeName, WeightName,
+    ConservationName, GhostsName, InterfacesName, KernelName, MethodOptions, ReactionName, SigmaName,
+    WedgeName, WeightName,
 };
 pub(crate) use points_file::FilePoints;
 pub use points_file::PointsFileSpec;

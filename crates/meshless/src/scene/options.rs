@@ -66,6 +66,17 @@ pub enum SigmaName {
     Sharp,
 }
 
+/// Which nodes of the sharp method have a balance for a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConservationName {
+    /// `none`
+    None,
+    /// `crossing`
+    Crossing,
+    /// `all`
+    All,
+}
+
 /// How a jump of the flux becomes a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReactionName {
@@ -101,6 +112,8 @@ pub struct MethodOptions {
     pub flux_weights: Option<bool>,
     /// Nodes do not see through slits.
     pub visibility: Option<bool>,
+    /// Balances in place of collocation.
+    pub conservation: Option<ConservationName>,
     /// Values beyond an interface.
     pub ghosts: Option<GhostsName>,
     /// Interfaces from the shapes of the regions, or from the labels of the nodes alone.

@@ -124,6 +124,16 @@ impl Split {
         Self::new(component.to_vec(), groups, pinned.collect::<Result<_, _>>()?)
     }
 
+    /// The same with these scales of the groups, also of those that are in no cluster.
+    ///
+    /// # Errors
+    /// A length that does not match, and scales that are not finite and positive.
+    pub fn with_group_scales(mut self, scales: &[f64]) -> Result<Self, MatrixError> {
+        MatrixError::check_length("scales of the groups", scales.len(), self.groups.len())?;
+        self.groups.iter_mut().zip(scales).for_each(|(group, &scale)| group.scale = scale);
+        Self::new(self.group, self.groups, self.pinned)
+    }
+
     /// The same for some of the nodes, in the order of `nodes`: those that are left where values are prescribed at the others.
     ///
     /// # Errors

@@ -91,6 +91,7 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
             stencil_seconds,
             interface_points: points.described(),
             gradients: None,
+            corners: None,
         })
     }
 

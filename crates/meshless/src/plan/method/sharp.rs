@@ -1,17 +1,22 @@
 //! The sharp method in plans.
 
-use meshless_interfaces::sharp::{MAX_ORDER, SharpParams};
+use meshless_interfaces::sharp::{Conservation, MAX_ORDER, SharpParams};
 
 use super::Steps;
 use crate::Error;
 use crate::plan::effects::Survey;
-use crate::scene::Scene;
+use crate::scene::{ConservationName, Scene};
 
 pub(super) fn params(scene: &Scene) -> SharpParams {
     let chosen = SharpParams::default();
     SharpParams {
         order: scene.method.order.unwrap_or(chosen.order),
         unsteady: scene.time.is_some(),
+        conservation: scene.method.options.conservation.map_or(chosen.conservation, |name| match name {
+            ConservationName::None => Conservation::None,
+            ConservationName::Crossing => Conservation::Crossing,
+            ConservationName::All => Conservation::All,
+        }),
         ..chosen
     }
 }

@@ -1,0 +1,160 @@
+//! Edges in space at which solutions are singular: those of boxes and of the caps of cylinders.
+//!
+//! Across an edge the solution is that of the plane at right angles to it. Its exponent is found there; corner functions serve no
+//! edge yet.
+
+use std::f64::consts::TAU;
+
+use meshless_geometry::{Aabb, Cylinder, FaceId, Shape};
+
+use super::wedge::{End, Sector, Wedge};
+use super::{Corner, CornerData, Obstacle};
+use crate::Condition;
+
+/// How far from an edge what meets there is looked at, over the length of the edge.
+const BESIDE: f64 = 1e-4;
+
+/// Directions in which it is looked; every sector that matters is much wider than the angle between two.
+const DIRECTIONS: usize = 720;
+
+/// How often the angle between two directions is halved to find a ray.
+const HALVINGS: usize = 40;
+
+/// How far from whole numbers an exponent may be for its function to count as a polynomial: rays are found by halving.
+const WHOLE: f64 = 1e-5;
+
+/// Edges that are looked at at most: of more boxes, what meets at them is told by the balance alone.
+const MOST_EDGES: usize = 5_000;
+
+/// A point of an edge: where, two directions across it, the length of the edge.
+type Across = ([f64; 3], [[f64; 3]; 2], f64);
+
+/// The edges whose solutions have a power below `order` that is no polynomial; one point of each.
+pub(super) fn edges<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Vec<Corner> {
+    let mut shapes: Vec<&Shape<D>> = vec![data.domain.outer()];
+    shapes.extend(data.domain.curved_faces().into_iter().map(|(_, shape, _)| shape));
+    shapes.extend((0..data.regions.len() as u16).filter_map(|label| data.regions.shape(label)));
+    let leaves = shapes.into_iter().flat_map(Shape::leaves).map(|(leaf, _)| leaf);
+    let mut all: Vec<Across> = Vec::new();
+    for leaf in leaves {
+        match leaf {
+            Shape::Box(b) => of_box(b, &mut all),
+            Shape::Cylinder(c) => of_cylinder(c, &mut all),
+            _ => {}
+        }
+    }
+    if all.len() > MOST_EDGES {
+        return Vec::new();
+    }
+    let mut found: Vec<Corner> = Vec::new();
+    for across in &all {
+        let Some(exponent) = exponent(data, across, order as f64) else { continue };
+        let at = across.0.to_vec();
+        if found.iter().all(|known| known.at != at) {
+            found.push(Corner { at, exponent, clear: 0.5 * across.2, obstacle: Some(Obstacle::Method) });
+        }
+    }
+    found
+}
+
+fn of_box<const D: usize>(b: &Aabb<D>, all: &mut Vec<Across>) {
+    let [min, max] = [&b.min, &b.max].map(|x| -> [f64; 3] { std::array::from_fn(|k| x[k]) });
+    for axis in 0..3 {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let unit = |k: usize| -> [f64; 3] { std::array::from_fn(|d| f64::from(u8::from(d == k))) };
+        let length = (0..3).map(|k| max[k] - min[k]).fold(f64::INFINITY, f64::min);
+        for corner in 0..4 {
+            let mut at: [f64; 3] = std::array::from_fn(|k| 0.5 * (min[k] + max[k]));
+            at[i] = if corner % 2 == 0 { min[i] } else { max[i] };
+            at[j] = if corner / 2 == 0 { min[j] } else { max[j] };
+            all.push((at, [unit(i), unit(j)], length));
+        }
+    }
+}
+
+fn of_cylinder<const D: usize>(cylinder: &Cylinder<D>, all: &mut Vec<Across>) {
+    let Some(half) = cylinder.half_length() else { return };
+    let [center, axis] =
+        [cylinder.center(), cylinder.axis()].map(|x| -> [f64; 3] { std::array::from_fn(|k| x[k]) });
+    // Any direction across the axis.
+    let least = (0..3).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
+    let mut out: [f64; 3] = std::array::from_fn(|k| f64::from(u8::from(k == least)) - axis[least] * axis[k]);
+    let length = out.iter().map(|x| x * x).sum::<f64>().sqrt();
+    out.iter_mut().for_each(|x| *x /= length);
+    for sign in [-1.0, 1.0] {
+        let at = std::array::from_fn(|k| center[k] + sign * half * axis[k] + cylinder.radius() * out[k]);
+        all.push((at, [out, axis], cylinder.radius().min(half)));
+    }
+}
+
+/// The smallest exponent below `most` of a power that is no polynomial.
+fn exponent<const D: usize>(
+    data: &CornerData<'_, D>,
+    (at, [e, f], length): &Across,
+    most: f64,
+) -> Option<f64> {
+    let step = BESIDE * length;
+    let place = |angle: f64, r: f64| -> [f64; D] {
+        let (sin, cos) = angle.sin_cos();
+        std::array::from_fn(|k| at[k] + r * (cos * e[k] + sin * f[k]))
+    };
+    let label = |angle: f64| {
+        let x = place(angle, step);
+        data.domain.contains(&x, 0.0).then(|| data.regions.label(&x, 0.0))
+    };
+    let direction = |k: usize| TAU * (k as f64 + 0.5) / DIRECTIONS as f64;
+    let labels: Vec<Option<u16>> = (0..DIRECTIONS).map(|k| label(direction(k))).collect();
+    // The rays, each with what is on its two sides.
+    let mut rays = Vec::new();
+    for k in 0..DIRECTIONS {
+        let (before, after) = (labels[k], labels[(k + 1) % DIRECTIONS]);
+        if before != after {
+            let (mut low, mut high) = (direction(k), direction(k) + TAU / DIRECTIONS as f64);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if label(middle) == before { &mut low } else { &mut high }) = middle;
+            }
+            rays.push((0.5 * (low + high), after));
+        }
+    }
+    let count = rays.len();
+    let outside: Vec<usize> = (0..count).filter(|&k| rays[k].1.is_none()).collect();
+    let first = match outside[..] {
+        [] if count > 1 => 0,
+        [only] => (only + 1) % count,
+        _ => return None,
+    };
+    let chain = count - outside.len();
+    let sector = |k: usize| {
+        let (here, next) = (rays[(first + k) % count], rays[(first + k + 1) % count]);
+        let opening = (next.0 - here.0).rem_euclid(TAU);
+        let label = here.1?;
+        let x = place(here.0 + 0.5 * opening, step);
+        let eta = data.materials.get(label as usize)?.diffusivity.at(&x);
+        (eta > 0.0 && eta.is_finite()).then_some(Sector { opening, eta, scale: 1.0 })
+    };
+    let sectors: Option<Vec<Sector>> = (0..chain).map(sector).collect();
+    let ends = match outside[..] {
+        [] => None,
+        _ => {
+            let of_ray = |k: usize| end_at(data, &place(rays[(first + k) % count].0, step), step);
+            Some([of_ray(0), of_ray(chain)])
+        }
+    };
+    let exponents = Wedge { sectors: sectors?, ends }.exponents(most);
+    exponents.iter().map(|e| e.0).find(|power| (power - power.round()).abs() > WHOLE)
+}
+
+/// What holds on the boundary at a point.
+fn end_at<const D: usize>(data: &CornerData<'_, D>, x: &[f64; D], step: f64) -> End {
+    let faces = (0..data.domain.faces().len() as u16).map(FaceId);
+    let feet = faces.filter_map(|face| {
+        let foot = data.domain.project_to_face(face, x).ok().filter(|foot| foot.distance.abs() < step)?;
+        data.boundary.condition(face, &foot.point).map(|condition| (foot.distance.abs(), condition))
+    });
+    let near = feet.min_by(|a, b| a.0.total_cmp(&b.0));
+    match near {
+        Some((_, Condition::Dirichlet(_))) => End::Dirichlet,
+        _ => End::Flux,
+    }
+}

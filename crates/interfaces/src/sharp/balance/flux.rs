@@ -1,0 +1,210 @@
+//! The flux through a face in terms of values and data, from one fit round its middle.
+
+use super::faces::{Beyond, Face};
+use crate::sharp::fit::{Row, Wanted};
+use crate::sharp::maker::{Maker, Scratch};
+use crate::sharp::stencil::Heard;
+use crate::{Condition, MethodError};
+
+/// What is left of the reproduction of a flux before it counts as not determined, over what it is made of.
+const REPRODUCTION: f64 = 1e-6;
+
+/// `int eta du/dn` over a face, n out of the cell of its first node, in terms of the unknowns.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Flux {
+    /// Nodes and factors of their values.
+    pub(super) values: Vec<(u32, f64)>,
+    /// The sum of these factors: zero, without rounding, where constants make no flux.
+    pub(super) sum: f64,
+    /// Coefficients of constants: cluster, value.
+    pub(super) constants: Vec<(u32, f64)>,
+    /// What the data add, as the first cell sees it and as the second one does: the flux may jump in between.
+    pub(super) known: [f64; 2],
+}
+
+impl Flux {
+    fn add_value(&mut self, node: u32, factor: f64) {
+        match self.values.iter_mut().find(|(j, _)| *j == node) {
+            Some((_, sum)) => *sum += factor,
+            None => self.values.push((node, factor)),
+        }
+    }
+
+    fn add_constant(&mut self, cluster: u32, factor: f64) {
+        match self.constants.iter_mut().find(|(c, _)| *c == cluster) {
+            Some((_, sum)) => *sum += factor,
+            None => self.constants.push((cluster, factor)),
+        }
+    }
+}
+
+impl<const D: usize> Maker<'_, D> {
+    /// `eta s` at a node.
+    fn conductivity(&self, j: u32) -> f64 {
+        self.problem.eta[j as usize] * self.unknowns.scale[self.unknowns.part[j as usize] as usize]
+    }
+
+    /// The flux of a face; `None` where no fit determines it.
+    pub(super) fn flux(&self, face: &Face<D>, scratch: &mut Scratch<D>) -> Result<Option<Flux>, MethodError> {
+        match face.beyond {
+            Beyond::Node(other) => Ok(self.between(face, other, scratch)),
+            Beyond::Boundary(id) => {
+                let mut conditions = Vec::with_capacity(face.points.len());
+                for point in &face.points {
+                    let none =
+                        || MethodError::NoCondition { node: face.node as usize, position: point.at.to_vec() };
+                    conditions.push(self.problem.boundary.condition(id, &point.at).ok_or_else(none)?);
+                }
+                Ok(self.at_boundary(face, &conditions, scratch))
+            }
+        }
+    }
+
+    /// The flux by the gradient of the polynomial of the softer side, and as much of the misfits of both nodes' values as a flux between
+    /// two points would have.
+    fn between(&self, face: &Face<D>, other: u32, scratch: &mut Scratch<D>) -> Option<Flux> {
+        let nodes = [face.node, other];
+        let labels = nodes.map(|j| self.problem.labels[j as usize]);
+        let parts = nodes.map(|j| self.unknowns.part[j as usize]);
+        let crosses = labels[0] != labels[1];
+        if !crosses && parts[0] != parts[1] {
+            return None;
+        }
+        let softer = usize::from(crosses && self.conductivity(nodes[1]) < self.conductivity(nodes[0]));
+        self.factor_at((&face.middle, parts[softer], Heard::All), scratch, |_| true)?;
+        let Scratch { stencil, .. } = scratch;
+        if !nodes.iter().all(|j| stencil.nodes.contains(j)) {
+            return None;
+        }
+        let places = parts.map(|part| stencil.parts.iter().position(|&p| p == part));
+        let places = [places[0]?, places[1]?];
+        let points = self.problem.cloud.points();
+        let distance = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        let [x, y] = nodes.map(|j| &points[j as usize]);
+        let ways = match crosses {
+            true => [distance(x, &face.middle), distance(y, &face.middle)],
+            false => [0.5 * distance(x, y); 2],
+        };
+        let eta = nodes.map(|j| self.problem.eta[j as usize]);
+        let conductance = face.area / (ways[0] / eta[0] + ways[1] / eta[1]);
+        let mut wanted = self.gradients(face, labels[softer], scratch);
+        let Scratch { stencil, .. } = scratch;
+        let local = |x: &[f64; D]| std::array::from_fn(|k| (x[k] - stencil.center[k]) / stencil.radius);
+        let scales = parts.map(|part| self.unknowns.scale[part as usize]);
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            let z = local(&points[nodes[side] as usize]);
+            let functional = Row::of_value(sign * conductance * scales[side]);
+            wanted.push(Wanted { part: places[side], z, functional });
+        }
+        let size = conductance * scales[softer];
+        let mut flux = self.combined(&wanted, size, scratch)?;
+        flux.add_value(nodes[0], -conductance * scales[0]);
+        flux.add_value(nodes[1], conductance * scales[1]);
+        self.add_sum(&mut flux, scratch);
+        let jump = self.problem.jump_between(labels[0], labels[1]).filter(|_| crosses);
+        if let Some(field) = jump.and_then(|(jump, _)| jump.flux.as_ref()) {
+            let jump: f64 = face.points.iter().map(|point| point.weight * field.at(&point.at)).sum();
+            flux.known[1 - softer] += if softer == 0 { jump } else { -jump };
+        }
+        Some(flux)
+    }
+
+    /// What a boundary lets through: what is prescribed, or where the value is, the gradient of the fit.
+    fn at_boundary(
+        &self,
+        face: &Face<D>,
+        conditions: &[Condition],
+        scratch: &mut Scratch<D>,
+    ) -> Option<Flux> {
+        let node = face.node as usize;
+        let (label, part) = (self.problem.labels[node], self.unknowns.part[node]);
+        let prescribed = matches!(conditions.first(), Some(Condition::Dirichlet(_)));
+        let field = &self.problem.materials[label as usize].diffusivity;
+        let (mut known, mut exchanges) = (0.0, Vec::new());
+        if !prescribed {
+            for (point, condition) in face.points.iter().zip(conditions) {
+                let (exchange, given) = condition.as_flux(field.at(&point.at))?;
+                known += point.weight * given;
+                if exchange != 0.0 {
+                    exchanges.push((point.at, point.weight * exchange));
+                }
+            }
+            if exchanges.is_empty() {
+                return Some(Flux { known: [known; 2], ..Flux::default() });
+            }
+        }
+        self.factor_at((&face.middle, part, Heard::All), scratch, |_| true)?;
+        let mut wanted = Vec::new();
+        let scale = self.unknowns.scale[part as usize];
+        let Scratch { stencil, .. } = scratch;
+        let local = |x: &[f64; D]| std::array::from_fn(|k| (x[k] - stencil.center[k]) / stencil.radius);
+        let size = match prescribed {
+            true => self.problem.eta[node] * scale * face.area / stencil.radius,
+            false => exchanges.iter().map(|(_, factor)| scale * factor.abs()).sum(),
+        };
+        wanted.extend(exchanges.iter().map(|(x, factor)| Wanted {
+            part: 0,
+            z: local(x),
+            functional: Row::of_value(-scale * factor),
+        }));
+        if prescribed {
+            wanted = self.gradients(face, label, scratch);
+        }
+        let mut flux = self.combined(&wanted, size, scratch)?;
+        self.add_sum(&mut flux, scratch);
+        let exchanged: f64 = exchanges.iter().map(|(_, factor)| factor).sum();
+        if exchanged != 0.0 {
+            flux.sum = flux.values.iter().map(|(_, factor)| factor).sum();
+            known -= exchanged * self.unknowns.offset[part as usize];
+            for (cluster, sigma) in self.unknowns.shares(part, None) {
+                flux.add_constant(cluster, -exchanged * sigma);
+            }
+        }
+        flux.known.iter_mut().for_each(|sum| *sum += known);
+        Some(flux)
+    }
+
+    /// `int eta s grad Q . n` of the own polynomial of the stencil that was factored last.
+    fn gradients(&self, face: &Face<D>, label: u16, scratch: &Scratch<D>) -> Vec<Wanted<D>> {
+        let stencil = &scratch.stencil;
+        let scale = self.unknowns.scale[stencil.parts[0] as usize];
+        let field = &self.problem.materials[label as usize].diffusivity;
+        let wanted = face.points.iter().map(|point| {
+            let strength = field.at(&point.at) * scale * point.weight / stencil.radius;
+            let functional = Row { gradient: point.normal.map(|n| strength * n), ..Row::of_value(0.0) };
+            let z = std::array::from_fn(|k| (point.at[k] - stencil.center[k]) / stencil.radius);
+            Wanted { part: 0, z, functional }
+        });
+        wanted.collect()
+    }
+
+    /// A functional of the fit that was factored last; `None` where that does not determine it.
+    fn combined(&self, wanted: &[Wanted<D>], size: f64, scratch: &mut Scratch<D>) -> Option<Flux> {
+        let Scratch { stencil, fit, combination, .. } = scratch;
+        let remainder = fit.functional_of(self, wanted, combination);
+        let known = combination.known;
+        if !(remainder <= REPRODUCTION * size && known.is_finite()) {
+            return None;
+        }
+        let values = stencil.nodes.iter().copied().zip(combination.values.iter().copied()).collect();
+        let mut flux = Flux { values, known: [known; 2], ..Flux::default() };
+        let part = |place: usize| stencil.parts[place];
+        for share in &combination.constants {
+            for (cluster, sigma) in self.unknowns.shares(part(share.of), share.less.map(part)) {
+                flux.add_constant(cluster, sigma * share.factor);
+            }
+        }
+        Some(flux)
+    }
+
+    /// The sum of the factors of values: none where constants are reproduced and only differences are prescribed.
+    fn add_sum(&self, flux: &mut Flux, scratch: &Scratch<D>) {
+        let stencil = &scratch.stencil;
+        let scale = |part: u32| self.unknowns.scale[part as usize];
+        let uniform = stencil.parts.iter().all(|&part| scale(part) == scale(stencil.parts[0]));
+        let exchanges = |&j: &u32| self.boundary_rows[j as usize].iter().any(|row| row.exchange != 0.0);
+        if !uniform || stencil.nodes.iter().any(exchanges) {
+            flux.sum = flux.values.iter().map(|(_, factor)| factor).sum();
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! The balance of a solution: what enters through the boundary and the interfaces, what arises inside, what is stored, and what of
+//! all that is left over. An exact solution leaves nothing; so what is left over is an error, whatever an estimate says.
+//!
+//! Fluxes are integrals over the surfaces by Gauss points. Where a condition says what the flux is, that is it; where u is
+//! prescribed, and at interfaces, it is that of the method's own polynomials, or of a fit to the nodes of one region.
+
+mod content;
+mod gauss;
+mod pieces;
+mod surfaces;
+
+use std::collections::BTreeMap;
+
+use meshless_interfaces::{Condition, Problem, Sample, Sampler, SystemSolution};
+
+use super::samples::{by_fits, samples};
+use super::{Boundary, Solved};
+use crate::Error;
+use crate::plan::{MethodParams, Plan};
+use crate::report::{BalanceReport, BoundaryFlux, InterfaceFlux, RegionBalance, SourceReport};
+use crate::scene::Scene;
+use content::{Body, Content};
+use surfaces::{Surfaces, Wall};
+
+/// How often panels get smaller towards corners where many points share one fit.
+const LEVELS: usize = 8;
+
+/// Degree of the fits that those of the second degree are compared with.
+const OTHER_DEGREE: usize = 3;
+
+/// Round-off of a slope, over the size of u and the distance of nodes.
+const ROUND_OFF: f64 = 1e-12;
+
+/// What a balance needs beside a solution: surfaces, contents of regions, what is stored.
+pub(crate) struct Ledger<const D: usize> {
+    surfaces: Surfaces<D>,
+    sources: Vec<Content>,
+    stored: Option<Vec<Content>>,
+    names: Vec<String>,
+    entries: Vec<String>,
+    spacing: f64,
+}
+
+/// Fluxes of a solution over the surfaces.
+pub(crate) struct Flows {
+    pub(crate) boundaries: Vec<BoundaryFlux>,
+    pub(crate) interfaces: Vec<InterfaceFlux>,
+    /// Of the whole, and of every region.
+    whole: Flow,
+    regions: Vec<Flow>,
+}
+
+/// What enters a region.
+#[derive(Debug, Clone, Copy, Default)]
+struct Flow {
+    walls: f64,
+    seams: f64,
+    /// The integral of the flux's size.
+    size: f64,
+    /// What jumps of the flux on interfaces make, in the whole.
+    jumps: f64,
+    /// Round-off of all that.
+    round_off: f64,
+}
+
+/// What is left over of the whole or of a region, over the sum of the sizes of the parts, and how far that is to be trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LeftOver {
+    pub(crate) absolute: f64,
+    pub(crate) relative: f64,
+    /// The same as a share: errors of integrals of sources and of what is stored, and round-off.
+    pub(crate) doubt: f64,
+}
+
+impl<const D: usize> Ledger<D> {
+    pub(crate) fn new(scene: &Scene, plan: &Plan, solved: &Solved<D>) -> Result<Self, Error> {
+        let problem = solved.discrete.problem();
+        let boundary = Boundary::new(scene, problem.domain);
+        let shared = matches!(plan.method.params, MethodParams::Sharp(_)) && solved.system.rates.is_none();
+        let surfaces = Surfaces::new(&problem, &boundary, if shared { LEVELS } else { 0 })?;
+        let measures = solved.discrete.measures();
+        let bodies = Body::all(&problem, &surfaces, &measures);
+        let own = |label: usize, values: &[f64]| -> Vec<(f64, f64)> {
+            let all = problem.labels.iter().zip(&measures).zip(values);
+            all.filter(|((l, _), _)| **l as usize == label).map(|((_, m), v)| (*m, *v)).collect()
+        };
+        let source =
+            |(label, body): (usize, &Body<D>)| match (&problem.materials[label].source, problem.source) {
+                (Some(field), Some(nodal)) => body.source(field, || body.nodal(&own(label, nodal))),
+                _ => Content::default(),
+            };
+        let stored = |rates: &Vec<f64>| -> Vec<Content> {
+            bodies.iter().enumerate().map(|(label, body)| body.nodal(&own(label, rates))).collect()
+        };
+        Ok(Self {
+            sources: bodies.iter().enumerate().map(source).collect(),
+            stored: solved.system.rates.as_ref().map(stored),
+            surfaces,
+            names: scene.regions.iter().map(|region| region.name.clone()).collect(),
+            entries: scene.boundaries.iter().map(|spec| spec.face.clone()).collect(),
+            spacing: solved.spacing(),
+        })
+    }
+
+    /// The fluxes of a solution by a method.
+    pub(crate) fn flows(
+        &self,
+        method: &MethodParams,
+        problem: &Problem<'_, D>,
+        system: &SystemSolution,
+    ) -> Result<Flows, Error> {
+        let found = samples(method, problem, system, &self.places())?;
+        Ok(self.summed(problem, &system.u, &found))
+    }
+
+    /// The same in another way, for a solution of which nodal values are all that is known; `None` for others.
+    pub(crate) fn other_flows(
+        &self,
+        method: &MethodParams,
+        problem: &Problem<'_, D>,
+        system: &SystemSolution,
+    ) -> Result<Option<Flows>, Error> {
+        if matches!(method, MethodParams::Sharp(_)) {
+            return Ok(None);
+        }
+        let found = by_fits(&Sampler::of_degree(problem, &system.u, OTHER_DEGREE)?, &self.places())?;
+        Ok(Some(self.summed(problem, &system.u, &found)))
+    }
+
+    /// Where the solution must be known: where no condition says what the flux is.
+    fn places(&self) -> Vec<[f64; D]> {
+        let walls = self.surfaces.walls.iter().filter(|wall| needs_sample(wall)).map(|wall| wall.within);
+        walls.chain(self.surfaces.seams.iter().map(|seam| seam.from)).collect()
+    }
+
+    fn summed(&self, problem: &Problem<'_, D>, u: &[f64], samples: &[Option<Sample<D>>]) -> Flows {
+        let entries = self.entries.iter().enumerate();
+        let mut flows = Flows {
+            boundaries: entries
+                .map(|(entry, face)| BoundaryFlux { face: face.clone(), entry, flux: 0.0, area: 0.0 })
+                .collect(),
+            interfaces: Vec::new(),
+            whole: Flow::default(),
+            regions: vec![Flow::default(); self.names.len()],
+        };
+        let largest = u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let round_off = ROUND_OFF * largest / self.spacing;
+        let mut samples = samples.iter();
+        for wall in &self.surfaces.walls {
+            let sample = if needs_sample(wall) { samples.next().copied().flatten() } else { None };
+            let eta = problem.materials[wall.region as usize].diffusivity.at(&wall.within);
+            let Some(flux) = entering(wall, eta, sample.as_ref()) else { continue };
+            let (area, part) = (wall.element.area, wall.element.area * flux);
+            let boundary = &mut flows.boundaries[wall.entry];
+            boundary.flux += part;
+            boundary.area += area;
+            for flow in [&mut flows.whole, &mut flows.regions[wall.region as usize]] {
+                flow.walls += part;
+                flow.size += part.abs();
+                flow.round_off += if sample.is_some() { area * eta * round_off } else { 0.0 };
+            }
+        }
+        for seam in &self.surfaces.seams {
+            let Some(sample) = samples.next().copied().flatten() else { continue };
+            let eta = problem.materials[sample.region as usize].diffusivity.at(&seam.from);
+            let area = seam.element.area;
+            let soft = area * eta * dot(&sample.gradient, &seam.element.normal);
+            let jump = area * seam.jump;
+            let sides = if seam.soft == 0 { [soft, soft + jump] } else { [soft - jump, soft] };
+            for (k, sign) in [(0, 1.0), (1, -1.0)] {
+                let flow = &mut flows.regions[seam.between[k] as usize];
+                flow.seams += sign * sides[k];
+                flow.size += sides[k].abs();
+                flow.round_off += area * eta * round_off;
+            }
+            flows.whole.jumps -= jump;
+            flows.whole.size += jump.abs();
+            let names = || seam.between.map(|region| self.names[region as usize].clone()).to_vec();
+            let known = flows.interfaces.iter().position(|known| {
+                known.between.iter().zip(seam.between).all(|(name, k)| *name == self.names[k as usize])
+            });
+            let known = known.unwrap_or_else(|| {
+                flows.interfaces.push(InterfaceFlux { between: names(), flux: 0.0, area: 0.0 });
+                flows.interfaces.len() - 1
+            });
+            flows.interfaces[known].flux += soft;
+            flows.interfaces[known].area += area;
+        }
+        flows
+    }
+
+    /// What is left over of the whole, and of every region.
+    pub(crate) fn left_over(&self, flows: &Flows) -> (LeftOver, Vec<LeftOver>) {
+        let all = |contents: &[Content]| {
+            contents.iter().fold((Content::default(), 0.0), |(sum, size), c| {
+                let value = sum.value + c.value;
+                (Content { value, doubt: sum.doubt + c.doubt }, size + c.value.abs())
+            })
+        };
+        let over = |flow: &Flow, sources: &[Content], stored: Option<&[Content]>| {
+            let ((source, made), (held, kept)) = (all(sources), all(stored.unwrap_or_default()));
+            let absolute = flow.walls + flow.seams + flow.jumps + source.value - held.value;
+            let size = flow.size + made + kept;
+            let share = |value: f64| if size > 0.0 { value / size } else { 0.0 };
+            let doubt = source.doubt + held.doubt + flow.round_off;
+            LeftOver { absolute, relative: share(absolute.abs()), doubt: share(doubt) }
+        };
+        let regions = flows.regions.iter().enumerate().map(|(k, flow)| {
+            over(flow, &self.sources[k..=k], self.stored.as_ref().map(|stored| &stored[k..=k]))
+        });
+        (over(&flows.whole, &self.sources, self.stored.as_deref()), regions.collect())
+    }
+
+    /// The balance in figures.
+    pub(crate) fn report(&self, flows: &Flows) -> BalanceReport {
+        let (whole, regions) = self.left_over(flows);
+        let jumps = flows.whole.jumps;
+        let stored = self.stored.as_ref();
+        let named = self.names.iter().cloned().zip(&self.sources);
+        BalanceReport {
+            into: flows.boundaries.clone(),
+            sources: SourceReport {
+                total: self.sources.iter().map(|c| c.value).sum::<f64>() + jumps,
+                regions: named.map(|(name, content)| (name, content.value)).collect(),
+                flux_jumps: jumps,
+            },
+            stored: stored.map(|stored| stored.iter().map(|c| c.value).sum()),
+            left_over: whole.absolute,
+            relative: whole.relative,
+            regions: (self.names.iter().zip(&flows.regions).zip(regions).enumerate())
+                .map(|(k, ((name, flow), left))| {
+                    let balance = RegionBalance {
+                        boundaries: flow.walls,
+                        interfaces: flow.seams,
+                        sources: self.sources[k].value,
+                        stored: stored.map(|stored| stored[k].value),
+                        left_over: left.absolute,
+                        relative: left.relative,
+                    };
+                    (name.clone(), balance)
+                })
+                .collect::<BTreeMap<_, _>>(),
+        }
+    }
+}
+
+/// Whether the flux through a point of the boundary depends on the solution.
+fn needs_sample<const D: usize>(wall: &Wall<D>) -> bool {
+    matches!(wall.condition, Condition::Dirichlet(_) | Condition::Robin { .. })
+}
+
+/// `eta du/dn` with n out of the domain: what enters.
+fn entering<const D: usize>(wall: &Wall<D>, eta: f64, sample: Option<&Sample<D>>) -> Option<f64> {
+    match wall.condition {
+        Condition::Dirichlet(_) => sample.map(|s| eta * dot(&s.gradient, &wall.element.normal)),
+        Condition::Neumann(slope) => Some(eta * slope),
+        Condition::Flux(flux) => Some(flux),
+        Condition::Robin { a, b, g } => sample.map(|s| (g - a * s.value) / b),
+    }
+}
+
+fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,254 @@
+//! Quadrature over a patch of a surface: divided where something else begins on it, with Gauss points on every part.
+
+use meshless_geometry::{Element, Patch};
+
+use super::gauss::gauss;
+
+/// Panels are so many spacings long at most.
+const PANEL: f64 = 2.0;
+
+/// Gauss points of a whole panel, by dimension.
+const POINTS: [usize; 3] = [1, 8, 4];
+
+/// Fewest points of a panel, by dimension.
+const LEAST_POINTS: [usize; 3] = [1, 6, 3];
+
+/// The same over a chord, which is short.
+const LEAST_ON_CHORD: usize = 3;
+
+/// Places a spacing where a patch is asked what it belongs to.
+const PROBES: f64 = 4.0;
+
+/// Probes along one parameter at most.
+const MOST_PROBES: f64 = 20_000.0;
+
+/// How near the ends of a patch the first and last of them are, over the distance of probes.
+const NEAR_END: f64 = 1e-5;
+
+/// Halvings on the way to where something else begins: to round-off of the parameter.
+const HALVINGS: usize = 52;
+
+/// Changes that are looked for between two probes at most.
+const CHANGES: usize = 4;
+
+/// Ratio of panels that get smaller towards corners, from a spacing on: alike on both sides of a corner, where fluxes may be infinite and
+/// cancel.
+const RATIO: f64 = 0.2;
+
+/// Distance in the parameter below which changes seen from two lines over a patch are the same straight edge.
+const SAME: f64 = 1e-9;
+
+/// Lines over a patch along which edges across them are looked for: one in so many spacings, and how many at least and at most.
+const LINE_SPACINGS: f64 = 2.0;
+const LINES: [f64; 2] = [3.0, 48.0];
+
+/// How finely to integrate.
+pub(super) struct Rule<'a, const D: usize> {
+    /// The distance of nodes near a point.
+    pub(super) spacing: &'a dyn Fn(&[f64; D]) -> f64,
+    /// The least of them.
+    pub(super) least: f64,
+    /// Panels that get smaller towards a corner in the plane; 0 where what is integrated knows of no corners.
+    pub(super) levels: usize,
+}
+
+/// A part of the parameter on which everything is of one kind.
+struct Part<T> {
+    from: f64,
+    to: f64,
+    kind: T,
+    /// Whether panels get smaller towards its ends.
+    graded: [bool; 2],
+}
+
+impl<const D: usize> Rule<'_, D> {
+    /// Points with the weights that belong to them as areas, and what they are of: what `kind` says of the part that they are on.
+    /// Where it says nothing nothing is integrated.
+    pub(super) fn points<T: PartialEq + Clone>(
+        &self,
+        patch: &Patch<'_, D>,
+        kind: &dyn Fn(&Element<D>) -> Option<T>,
+    ) -> Vec<(Element<D>, T)> {
+        if patch.is_small() {
+            let element = patch.at([0.0; 2]);
+            return kind(&element).map(|kind| (element, kind)).into_iter().collect();
+        }
+        if D == 3 { self.over_square(patch, kind) } else { self.along_line(patch, kind) }
+    }
+
+    fn along_line<T: PartialEq + Clone>(
+        &self,
+        patch: &Patch<'_, D>,
+        kind: &dyn Fn(&Element<D>) -> Option<T>,
+    ) -> Vec<(Element<D>, T)> {
+        let mut found = Vec::new();
+        for part in self.parts(patch, 0, &|s| kind(&patch.at([s, 0.0]))) {
+            for (s, weight) in self.nodes(patch, 0, &part, &|s| [s, 0.0]) {
+                let element = patch.at([s, 0.0]);
+                found.push((Element { area: weight * element.area, ..element }, part.kind.clone()));
+            }
+        }
+        found
+    }
+
+    fn over_square<T: PartialEq + Clone>(
+        &self,
+        patch: &Patch<'_, D>,
+        kind: &dyn Fn(&Element<D>) -> Option<T>,
+    ) -> Vec<(Element<D>, T)> {
+        let mut found = Vec::new();
+        for first in self.across(patch, kind) {
+            for (s, weight) in self.nodes(patch, 0, &first, &|s| [s, 0.5]) {
+                for part in self.parts(patch, 1, &|t| kind(&patch.at([s, t]))) {
+                    for (t, inner) in self.nodes(patch, 1, &part, &|t| [s, t]) {
+                        let element = patch.at([s, t]);
+                        let area = weight * inner * element.area;
+                        found.push((Element { area, ..element }, part.kind.clone()));
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// Parts of the first parameter of a square between straight edges across it: those that two lines see in the same place.
+    fn across<T: PartialEq + Clone>(
+        &self,
+        patch: &Patch<'_, D>,
+        kind: &dyn Fn(&Element<D>) -> Option<T>,
+    ) -> Vec<Part<()>> {
+        let lines = (patch.extent[1] / (LINE_SPACINGS * self.least)).ceil().clamp(LINES[0], LINES[1]);
+        let mut seen: Vec<f64> = Vec::new();
+        for line in 0..lines as usize {
+            let t = (line as f64 + 0.5) / lines;
+            let parts = self.all_parts(patch, 0, &|s| kind(&patch.at([s, t])));
+            seen.extend(parts.iter().skip(1).map(|part| part.from));
+        }
+        seen.sort_by(f64::total_cmp);
+        let mut edges = vec![0.0];
+        for same in seen.chunk_by(|a, b| b - a <= SAME) {
+            if same.len() > 1 {
+                edges.push(same[same.len() / 2]);
+            }
+        }
+        edges.push(1.0);
+        edges.windows(2).map(|e| Part { from: e[0], to: e[1], kind: (), graded: [false; 2] }).collect()
+    }
+
+    /// The parts of a parameter that count.
+    fn parts<T: PartialEq>(
+        &self,
+        patch: &Patch<'_, D>,
+        axis: usize,
+        kind: &dyn Fn(f64) -> Option<T>,
+    ) -> Vec<Part<T>> {
+        let parts = self.all_parts(patch, axis, kind).into_iter();
+        parts.filter_map(|p| Some(Part { from: p.from, to: p.to, graded: p.graded, kind: p.kind? })).collect()
+    }
+
+    /// All parts of a parameter.
+    fn all_parts<T: PartialEq>(
+        &self,
+        patch: &Patch<'_, D>,
+        axis: usize,
+        kind: &dyn Fn(f64) -> Option<T>,
+    ) -> Vec<Part<Option<T>>> {
+        let cells = (PROBES * patch.extent[axis] / self.least).ceil().clamp(2.0, MOST_PROBES);
+        let near = NEAR_END / cells;
+        let middles = (0..cells as usize).map(|k| (k as f64 + 0.5) / cells);
+        let probes = std::iter::once(near).chain(middles).chain(std::iter::once(1.0 - near));
+        let first = kind(near);
+        let mut parts = vec![Part { from: 0.0, to: 1.0, kind: first, graded: [patch.ends[axis]; 2] }];
+        let mut before = near;
+        for probe in probes {
+            let here = kind(probe);
+            for _ in 0..CHANGES {
+                let Some(last) = parts.last_mut().filter(|last| last.kind != here) else { break };
+                let (mut low, mut high) = (before, probe);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    *(if kind(middle) == last.kind { &mut low } else { &mut high }) = middle;
+                }
+                let change = 0.5 * (low + high);
+                let graded = [true, last.graded[1]];
+                (last.to, last.graded[1]) = (change, true);
+                parts.push(Part { from: change, to: 1.0, kind: kind(high), graded });
+                before = high;
+            }
+            before = probe;
+        }
+        parts
+    }
+
+    /// Gauss points of a part, with their weights.
+    fn nodes<T>(
+        &self,
+        patch: &Patch<'_, D>,
+        axis: usize,
+        part: &Part<T>,
+        at: &dyn Fn(f64) -> [f64; 2],
+    ) -> Vec<(f64, f64)> {
+        let extent = patch.extent[axis];
+        let (most, least) =
+            (POINTS[D - 1], if patch.is_chord() { LEAST_ON_CHORD } else { LEAST_POINTS[D - 1] });
+        let mut found = Vec::new();
+        for (from, to) in self.panels(patch, axis, part, at) {
+            let length = extent * (to - from);
+            let spacing = (self.spacing)(&patch.at(at(0.5 * (from + to))).at);
+            let points = (most as f64 * length / (PANEL * spacing)).ceil() as usize;
+            let rule = gauss(points.clamp(least, most));
+            found.extend(rule.into_iter().map(|(x, w)| (from + (to - from) * x, w * (to - from))));
+        }
+        found
+    }
+
+    /// Panels of a part: as long as spacings are, shorter towards corners in the plane.
+    fn panels<T>(
+        &self,
+        patch: &Patch<'_, D>,
+        axis: usize,
+        part: &Part<T>,
+        at: &dyn Fn(f64) -> [f64; 2],
+    ) -> Vec<(f64, f64)> {
+        let levels = if D == 2 { self.levels } else { 0 };
+        let both = levels > 0 && part.graded == [true; 2];
+        let share = (part.to - part.from) * patch.parts[axis] as f64;
+        let first = share.ceil().max(if both { 2.0 } else { 1.0 }) as usize;
+        let cut = |k: usize| part.from + (part.to - part.from) * k as f64 / first as f64;
+        let mut waiting: Vec<(f64, f64)> = (0..first).rev().map(|k| (cut(k), cut(k + 1))).collect();
+        let mut panels = Vec::new();
+        while let Some((from, to)) = waiting.pop() {
+            let middle = 0.5 * (from + to);
+            let spacing = [from, middle, to].map(|s| (self.spacing)(&patch.at(at(s)).at));
+            let smallest = spacing.into_iter().fold(f64::INFINITY, f64::min);
+            if patch.extent[axis] * (to - from) > PANEL * smallest && middle > from && middle < to {
+                waiting.push((middle, to));
+                waiting.push((from, middle));
+            } else {
+                panels.push((from, to));
+            }
+        }
+        if levels == 0 || panels.is_empty() {
+            return panels;
+        }
+        // Cuts towards an end, nearest first, within the panel there.
+        let towards = |end: f64, other: f64| -> Vec<f64> {
+            let spacing = (self.spacing)(&patch.at(at(end)).at) / patch.extent[axis];
+            let from = (other - end).signum() * spacing.min((1.0 - RATIO) * (other - end).abs());
+            (0..levels).rev().map(|k| end + from * RATIO.powi(k as i32)).collect()
+        };
+        let mut cuts: Vec<f64> = panels.iter().map(|p| p.0).chain(std::iter::once(part.to)).collect();
+        if part.graded[1] {
+            let other = cuts[cuts.len() - 2];
+            let mut more = towards(part.to, other);
+            more.reverse();
+            let last = cuts.len() - 1;
+            cuts.splice(last..last, more);
+        }
+        if part.graded[0] {
+            let other = cuts[1];
+            cuts.splice(1..1, towards(part.from, other));
+        }
+        cuts.windows(2).map(|c| (c[0], c[1])).filter(|(from, to)| to > from).collect()
+    }
+}

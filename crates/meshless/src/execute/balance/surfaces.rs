@@ -1,0 +1,157 @@
+//! The surfaces of a scene as points with weights: the boundary by its conditions, and the interfaces by the regions that they part.
+
+use meshless_geometry::{Element, FaceId, Patch, side_patch};
+use meshless_interfaces::{Condition, Problem};
+use meshless_neighbors::{CellList, NeighborError};
+
+use super::pieces::Rule;
+use crate::execute::Boundary;
+
+/// How far beside a surface its sides are told, in spacings: ten times the distance at which a node counts as on it.
+const BESIDE: f64 = 1e-8;
+
+/// Cells of a grid in which level sets are looked for, a node.
+const CELLS: f64 = 16.0;
+
+/// A point of the boundary with the area that it stands for, the normal out of the domain.
+pub(super) struct Wall<const D: usize> {
+    pub(super) element: Element<D>,
+    /// Its entry of `[[boundaries]]`, and what that says there.
+    pub(super) entry: usize,
+    pub(super) condition: Condition,
+    /// The region inside, and a place in it.
+    pub(super) region: u16,
+    pub(super) within: [f64; D],
+}
+
+/// A point of an interface with the area that it stands for, the normal from the region named first to the other.
+pub(super) struct Seam<const D: usize> {
+    pub(super) element: Element<D>,
+    pub(super) between: [u16; 2],
+    /// Which of the two conducts less: there the slope is what varies. And a place on that side.
+    pub(super) soft: usize,
+    pub(super) from: [f64; D],
+    /// `eta du/dn` on the second side less that on the first, where it is given.
+    pub(super) jump: f64,
+}
+
+/// All of them.
+pub(super) struct Surfaces<const D: usize> {
+    pub(super) walls: Vec<Wall<D>>,
+    pub(super) seams: Vec<Seam<D>>,
+}
+
+impl<const D: usize> Surfaces<D> {
+    /// `levels` is how often panels get smaller towards corners.
+    pub(super) fn new(
+        problem: &Problem<'_, D>,
+        boundary: &Boundary<D>,
+        levels: usize,
+    ) -> Result<Self, NeighborError> {
+        let spacings = problem.cloud.spacing();
+        let least = spacings.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let most = spacings.iter().fold(0.0_f64, |a, &b| a.max(b));
+        let index = CellList::new(problem.cloud.points(), most)?;
+        let near = |x: &[f64; D]| index.nearest_one(x).map_or(least, |i| spacings[i as usize]);
+        let uniform = |_: &[f64; D]| least;
+        let spacing: &dyn Fn(&[f64; D]) -> f64 = if most > least { &near } else { &uniform };
+        let rule = Rule { spacing, least, levels };
+        let bounds = problem.domain.bounds();
+        let size = (bounds.measure() / (CELLS * problem.cloud.len() as f64)).powf(1.0 / D as f64);
+        let step = BESIDE * least;
+        Ok(Self {
+            walls: walls(problem, boundary, &rule, size, step),
+            seams: seams(problem, &rule, size, step),
+        })
+    }
+}
+
+fn walls<const D: usize>(
+    problem: &Problem<'_, D>,
+    boundary: &Boundary<D>,
+    rule: &Rule<'_, D>,
+    size: f64,
+    step: f64,
+) -> Vec<Wall<D>> {
+    let domain = problem.domain;
+    let bounds = domain.bounds();
+    let mut faces: Vec<(FaceId, Vec<Patch<'_, D>>)> = Vec::new();
+    if let Some(outer) = domain.outer_box() {
+        faces.extend((0..2 * D).map(|k| (FaceId(k as u16), vec![side_patch(&outer, k / 2, k % 2 == 1)])));
+    }
+    let curved = domain.curved_faces().into_iter();
+    faces.extend(curved.map(|(face, shape, _)| (face, shape.patches(&bounds, size))));
+    let mut walls = Vec::new();
+    for (face, patches) in &faces {
+        // Which way is out, which condition holds, and what is inside.
+        let kind = |element: &Element<D>| -> Option<(bool, usize, u16)> {
+            let inside = [-step, step].map(|t| domain.contains(&beside(element, t), 0.0));
+            let along = match inside {
+                [true, false] => true,
+                [false, true] => false,
+                _ => return None,
+            };
+            let within = beside(element, if along { -step } else { step });
+            Some((along, boundary.entry(*face, &element.at)?, problem.regions.label(&within, 0.0)))
+        };
+        for patch in patches {
+            for (element, (along, entry, region)) in rule.points(patch, &kind) {
+                let out = if along { 1.0 } else { -1.0 };
+                let element = Element { normal: element.normal.map(|n| out * n), ..element };
+                walls.push(Wall {
+                    entry,
+                    condition: boundary.of_entry(entry, &element.at),
+                    region,
+                    within: beside(&element, -step),
+                    element,
+                });
+            }
+        }
+    }
+    walls
+}
+
+fn seams<const D: usize>(problem: &Problem<'_, D>, rule: &Rule<'_, D>, size: f64, step: f64) -> Vec<Seam<D>> {
+    let bounds = problem.domain.bounds();
+    let mut seams = Vec::new();
+    for surface in 0..problem.regions.len() as u16 - 1 {
+        let Some(shape) = problem.regions.shape(surface) else { continue };
+        // Which regions are behind and before the surface, and which of them conducts less.
+        let kind = |element: &Element<D>| -> Option<([u16; 2], usize)> {
+            let places = [-step, step].map(|t| beside(element, t));
+            let sides = [0, 1].map(|k| problem.regions.label(&places[k], 0.0));
+            // Where two shapes have a surface in common it is that of the one named first.
+            let own = sides[0] != sides[1] && sides[0].min(sides[1]) == surface;
+            if !own || !places.iter().all(|x| problem.domain.contains(x, 0.0)) {
+                return None;
+            }
+            let eta = [0, 1].map(|k| problem.materials[sides[k] as usize].diffusivity.at(&places[k]));
+            Some((sides, usize::from(eta[1] < eta[0])))
+        };
+        for patch in shape.patches(&bounds, size) {
+            for (element, (sides, soft)) in rule.points(&patch, &kind) {
+                let from = beside(&element, if soft == 0 { -step } else { step });
+                let turned = sides[0] > sides[1];
+                let turn = if turned { -1.0 } else { 1.0 };
+                let between = [sides[0].min(sides[1]), sides[0].max(sides[1])];
+                // That the fluxes on the two sides differ by so much holds for either direction of the normal.
+                let jump = problem
+                    .jump_between(between[0], between[1])
+                    .and_then(|(jump, _)| jump.flux.as_ref())
+                    .map_or(0.0, |flux| flux.at(&element.at));
+                seams.push(Seam {
+                    element: Element { normal: element.normal.map(|n| turn * n), ..element },
+                    between,
+                    soft: if turned { 1 - soft } else { soft },
+                    from,
+                    jump,
+                });
+            }
+        }
+    }
+    seams
+}
+
+fn beside<const D: usize>(element: &Element<D>, t: f64) -> [f64; D] {
+    std::array::from_fn(|k| element.at[k] + t * element.normal[k])
+}

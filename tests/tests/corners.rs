@@ -1,0 +1,228 @@
+//! Corners at which the solution is singular: what is known of them, and what is said where no functions serve them.
+
+use meshless::plan::{Effect, Plan, Stage};
+use meshless::report::Report;
+use meshless::scene::Scene;
+use meshless_tests::solve::solve_scene;
+
+fn scene(text: &str) -> Scene {
+    Scene::parse(text, "corners.toml").expect("the scene is right")
+}
+
+fn report(text: &str) -> Report {
+    solve_scene(&scene(text)).expect("the scene can be solved").report
+}
+
+/// A chip in a plate: 3.6 is made in it.
+fn chip(eta: f64, spacing: f64, order: usize) -> String {
+    format!(
+        r#"
+dimension = 2
+[domain]
+box = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}
+[points]
+spacing = {spacing}
+[[regions]]
+name = "chip"
+box = {{ min = [-0.3, -0.3], max = [0.3, 0.3] }}
+diffusivity = {eta:e}
+source = 10
+[[regions]]
+name = "plate"
+diffusivity = 1
+[[boundaries]]
+face = "all"
+dirichlet = 0
+[method]
+order = {order}
+[output]
+fluxes = true
+"#
+    )
+}
+
+#[test]
+fn what_a_chip_makes_leaves_the_plate() {
+    for (eta, bound) in [(1e-10, 1e-3), (1e-4, 1e-3), (1e-2, 1e-3), (10.0, 1e-4), (1e4, 1e-4), (1e10, 1e-4)] {
+        let report = report(&chip(eta, 0.05, 4));
+        let flux = report.fluxes.expect("asked for").boundaries[0].flux;
+        assert!((flux / -3.6 - 1.0).abs() < bound, "{eta:e}: {flux}");
+        assert_eq!(report.corners.iter().filter(|corner| corner.served).count(), 4, "{eta:e}");
+    }
+    let flux = report(&chip(10.0, 0.025, 6)).fluxes.expect("asked for").boundaries[0].flux;
+    assert!((flux / -3.6 - 1.0).abs() < 1e-6, "{flux}");
+}
+
+/// The L-shape with `r^(2/3) sin(2/3 theta)` on its boundary.
+fn l_shape(order: usize) -> String {
+    let angle = "if(atan2(y,x)<-1e-12,atan2(y,x)+2*pi,atan2(y,x))";
+    let u = format!("if(x^2+y^2<1e-24,0,(x^2+y^2)^(1/3)*sin(2/3*{angle}))");
+    format!(
+        r#"
+dimension = 2
+[domain]
+polygon = [[0,0],[1,0],[1,1],[-1,1],[-1,-1],[0,-1]]
+[points]
+spacing = 0.05
+[[regions]]
+name = "plate"
+diffusivity = 1
+exact = "{u}"
+[[boundaries]]
+face = "all"
+dirichlet = "{u}"
+[method]
+name = "sharp"
+order = {order}
+"#
+    )
+}
+
+#[test]
+fn a_reentrant_corner_costs_no_digits() {
+    for (order, bound) in [(4, 1e-6), (6, 1e-8), (8, 1e-9)] {
+        let report = report(&l_shape(order));
+        let error = report.errors.expect("exact").l2;
+        assert!(error < bound && report.unknowns < 1500, "order {order}: {error:e}");
+        assert!(report.estimate.l2.is_some_and(|estimate| 3.0 * estimate > error));
+        let corner = report.corners.iter().find(|c| c.at == [0.0, 0.0]).expect("the re-entrant one");
+        assert!(corner.served && (corner.exponent - 2.0 / 3.0).abs() < 1e-9);
+    }
+}
+
+/// Kellogg's problem: `u = r^0.1 mu(theta)`.
+fn kellogg(spacing: f64) -> String {
+    let angle = "if(atan2(y,x)<0,atan2(y,x)+2*pi,atan2(y,x))";
+    let (sigma, rho) = ("(-14.92256510455152)", "(pi/4)");
+    let mu = [
+        format!("cos((pi/2-{sigma})*0.1)*cos(({angle}-pi/2+{rho})*0.1)"),
+        format!("cos({rho}*0.1)*cos(({angle}-pi+{sigma})*0.1)"),
+        format!("cos({sigma}*0.1)*cos(({angle}-pi-{rho})*0.1)"),
+        format!("cos((pi/2-{rho})*0.1)*cos(({angle}-3*pi/2-{sigma})*0.1)"),
+    ];
+    let u =
+        format!("(x^2+y^2)^0.05*if(x>=0, if(y>=0, {}, {}), if(y>=0, {}, {}))", mu[0], mu[3], mu[1], mu[2]);
+    format!(
+        r#"
+dimension = 2
+[domain]
+box = {{ min = [-1,-1], max = [1,1] }}
+[points]
+spacing = {spacing}
+[[regions]]
+name = "stiff"
+union = [{{ box = {{ min = [0,0], max = [1,1] }} }}, {{ box = {{ min = [-1,-1], max = [0,0] }} }}]
+diffusivity = 161.4476387975881
+exact = "{u}"
+[[regions]]
+name = "soft"
+diffusivity = 1
+exact = "{u}"
+[[boundaries]]
+face = "all"
+dirichlet = "{u}"
+"#
+    )
+}
+
+#[test]
+fn four_quadrants_meet_in_a_point() {
+    let report = report(&kellogg(0.05));
+    let error = report.errors.expect("exact").l2;
+    assert!(error < 1e-6, "{error:e}");
+    let corner = report.corners.iter().find(|c| c.at == [0.0, 0.0]).expect("the middle");
+    assert!(corner.served && (corner.exponent - 0.1).abs() < 1e-9, "{}", corner.exponent);
+}
+
+#[test]
+fn two_prescribed_values_that_meet_are_joined_by_the_angle() {
+    // ISO 10211 case 1: u = sum of 80/((2k+1) pi) sin(...) sinh(...)/sinh(...) over odd modes; 9.6582 at a quarter.
+    let text = r#"
+dimension = 2
+[domain]
+box = { min = [0.0, 0.0], max = [4.0, 8.0] }
+[points]
+spacing = 0.2
+[[regions]]
+name = "column"
+diffusivity = 1
+[[boundaries]]
+face = "top"
+dirichlet = 20
+[[boundaries]]
+face = "right"
+neumann = 0
+[[boundaries]]
+face = "all"
+dirichlet = 0
+[[probes]]
+at = [1.0, 7.0]
+"#;
+    let series = |x: f64, y: f64| -> f64 {
+        let mode = |k: u32| {
+            let m = f64::from(2 * k + 1) * std::f64::consts::PI / 8.0;
+            // sinh(m y) / sinh(8 m) without overflow.
+            let ratio = (m * (y - 8.0)).exp() * (1.0 - (-2.0 * m * y).exp()) / (1.0 - (-16.0 * m).exp());
+            80.0 / (f64::from(2 * k + 1) * std::f64::consts::PI) * (m * x).sin() * ratio
+        };
+        (0..200).map(mode).sum()
+    };
+    let report = report(text);
+    let found = report.probes[0].value.expect("inside");
+    assert!((found - series(1.0, 7.0)).abs() < 1e-3, "{found} {}", series(1.0, 7.0));
+    assert!(report.corners.iter().any(|corner| corner.exponent == 0.0 && corner.served));
+}
+
+#[test]
+fn scenes_without_singular_corners_have_no_corner_functions() {
+    let text = chip(10.0, 0.1, 4).replace(
+        "box = { min = [-0.3, -0.3], max = [0.3, 0.3] }",
+        "sphere = { center = [0, 0], radius = 0.3 }",
+    );
+    let text = text.replace("dirichlet = 0", "dirichlet = \"x\"");
+    let plan = Plan::new(&scene(&text)).expect("a plan");
+    assert!(!plan.runs(Stage::CornerFunctions));
+    assert!(!plan.effects.iter().any(|effect| matches!(effect, Effect::Corners { .. })));
+    assert!(report(&text).corners.is_empty());
+    let plan = Plan::new(&scene(&chip(10.0, 0.1, 4))).expect("a plan");
+    assert!(plan.runs(Stage::CornerFunctions));
+    let exponent = plan.effects.iter().find_map(|effect| match effect {
+        Effect::Corners { count: 4, exponent } => Some(*exponent),
+        _ => None,
+    });
+    assert!(exponent.is_some_and(|exponent| (exponent - 0.731_691_8).abs() < 1e-6));
+}
+
+#[test]
+fn corners_that_nothing_serves_are_named_and_raise_the_estimate() {
+    // Other methods have no functions.
+    let text = chip(10.0, 0.1, 4)
+        .replace("[method]\norder = 4", "[method]\nname = \"gfdm-hybrid\"")
+        .replace("fluxes = true", "");
+    let found = report(&text);
+    assert_eq!(found.corners.iter().filter(|corner| !corner.served && corner.exponent < 1.0).count(), 4);
+    let least = (0.1_f64 / 0.6).powf(2.0 * 0.731_691_8) * 2.0 * (1.0 - 0.731_691_8);
+    assert!(found.estimate.l2.is_some_and(|estimate| estimate >= 0.999 * least));
+    // Edges in space.
+    let cube = r#"
+dimension = 3
+[domain]
+box = { min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }
+[points]
+spacing = 0.25
+[[regions]]
+name = "cube"
+box = { min = [-0.4, -0.4, -0.4], max = [0.4, 0.4, 0.4] }
+diffusivity = 10
+source = 10
+[[regions]]
+name = "out"
+diffusivity = 1
+[[boundaries]]
+face = "all"
+dirichlet = 0
+"#;
+    let found = report(cube);
+    assert_eq!(found.corners.len(), 12);
+    assert!(found.corners.iter().all(|edge| !edge.served && (edge.exponent - 0.731_691_8).abs() < 1e-4));
+}

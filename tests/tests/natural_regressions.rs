@@ -1,0 +1,353 @@
+//! Problems that are given by their data, which once were answered wrongly: each by what is known of its solution.
+
+use meshless::plan::Plan;
+use meshless::report::Report;
+use meshless::scene::{MethodName, Scene};
+use meshless_tests::solve::solve_scene;
+
+fn scene(text: &str) -> Scene {
+    Scene::parse(text, "natural.toml").expect("the scene is right")
+}
+
+fn report(scene: &Scene) -> Report {
+    solve_scene(scene).expect("the scene can be solved").report
+}
+
+fn with(text: &str, method: MethodName) -> Report {
+    let mut scene = scene(text);
+    scene.method.name = method;
+    report(&scene)
+}
+
+/// A triangle with u = x in it and nothing outside: its three jumps of the flux, by the sector seen from (0, -0.1).
+fn triangle(seed: u32) -> String {
+    format!(
+        r#"
+dimension = 2
+[domain]
+box = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}
+[points]
+spacing = 0.08
+seed = {seed}
+[[regions]]
+name = "in"
+polygon = [[-0.5, -0.5], [0.5, -0.3], [0.0, 0.5]]
+diffusivity = 1
+exact = "x"
+[[regions]]
+name = "out"
+diffusivity = 1
+exact = "0"
+[[interfaces]]
+between = ["in", "out"]
+jump = "-x"
+flux_jump = "if(atan2(y + 0.1, x) < -2.46685171136624, 0.894427190999916, if(atan2(y + 0.1, x) < -0.380506377112365, -0.196116135138184, if(atan2(y + 0.1, x) < pi/2, -0.847998304005088, 0.894427190999916)))"
+[[boundaries]]
+face = "all"
+dirichlet = 0
+"#
+    )
+}
+
+#[test]
+fn jumps_of_the_flux_are_those_of_the_sides_at_acute_corners() {
+    for seed in 1..=6 {
+        let text = triangle(seed);
+        let error = report(&scene(&text)).errors.expect("exact").l2;
+        assert!(error < 1e-12, "seed {seed}: {error:e}");
+    }
+}
+
+/// A bar with a source in its stiff middle: u = 0.3 + phi (1 + x/2)/eta.
+fn bar(contrast: f64, spacing: f64) -> String {
+    format!(
+        r#"
+dimension = 1
+[domain]
+box = {{ min = [-1.0], max = [1.0] }}
+[points]
+spacing = {spacing}
+[[regions]]
+name = "in"
+box = {{ min = [-0.3], max = [0.4] }}
+diffusivity = {contrast:e}
+source = "-1.9 - 3*x"
+exact = "0.3 + (x + 0.3)*(x - 0.4)*(1 + x/2)/{contrast:e}"
+[[regions]]
+name = "out"
+diffusivity = 1
+source = "-1.9 - 3*x"
+exact = "0.3 + (x + 0.3)*(x - 0.4)*(1 + x/2)"
+[[boundaries]]
+face = "all"
+dirichlet = "0.3 + (x + 0.3)*(x - 0.4)*(1 + x/2)"
+[method]
+name = "immersed-interface"
+"#
+    )
+}
+
+#[test]
+fn immersed_interfaces_of_stiff_bars_with_sources_do_not_know_the_contrast() {
+    let error = |contrast, spacing| report(&scene(&bar(contrast, spacing))).errors.expect("exact").l2;
+    let few = error(1e2, 0.04);
+    for contrast in [1e4, 1e6, 1e10] {
+        let many = error(contrast, 0.04);
+        assert!(many < 1.1 * few && many < 2e-3, "{contrast:e}: {many:e}, at 100 {few:e}");
+        assert!(error(contrast, 0.02) < 0.7 * many, "{contrast:e}");
+    }
+}
+
+#[test]
+fn immersed_interfaces_of_boxes_that_begin_at_the_wall_are_found() {
+    let text = r#"
+dimension = 2
+[domain]
+box = { min = [-1.0, -1.0], max = [1.0, 1.0] }
+[points]
+spacing = 0.08
+[[regions]]
+name = "in"
+box = { min = [-1.0, -0.4], max = [0.0, 0.4] }
+diffusivity = 2
+[[regions]]
+name = "out"
+diffusivity = 1
+[[boundaries]]
+face = "all"
+dirichlet = "x"
+[[probes]]
+at = [-0.4, 0.1]
+[[probes]]
+at = [0.3, -0.2]
+"#;
+    let [own, other] = [MethodName::ImmersedInterface, MethodName::Sharp].map(|method| with(text, method));
+    for (a, b) in own.probes.iter().zip(&other.probes) {
+        assert!((a.value - b.value).abs() < 0.02, "{} for {}", a.value, b.value);
+    }
+}
+
+/// The free face of a spreader beside its die lies on the plane of the half-space that the die is the part of: u = x.
+#[test]
+fn half_spaces_do_not_take_the_nodes_of_other_faces_on_their_planes() {
+    let text = r#"
+dimension = 2
+[domain]
+polygon = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.6, 1.0], [0.6, 1.4], [0.0, 1.4]]
+[points]
+spacing = 0.05
+[[regions]]
+name = "die"
+half_space = { point = [0.0, 1.0], normal = [0.0, -1.0] }
+diffusivity = 10
+exact = "x"
+[[regions]]
+name = "spreader"
+diffusivity = 1
+exact = "x"
+[[boundaries]]
+face = "all"
+where = "abs(x - 1) > 0.999999"
+dirichlet = "x"
+[[boundaries]]
+face = "all"
+where = "max(max(abs(x - 0.6) - 1e-5, 1.0000001 - y), y - 1.3999999) < 0"
+neumann = 1
+[[boundaries]]
+face = "all"
+neumann = 0
+"#;
+    let error = report(&scene(text)).errors.expect("exact").linf;
+    assert!(error < 1e-11, "{error:e}");
+}
+
+/// The quarter of a cell of stiff fibres in a matrix: prescribed values cut the fibre. The flux is half of the effective diffusivity of
+/// a square array at a fraction of 0.7, whose values are those of Perrins, McKenzie and McPhedran.
+fn quarter(contrast: f64, spacing: f64) -> String {
+    format!(
+        r#"
+dimension = 2
+[domain]
+box = {{ min = [0.0, 0.0], max = [0.5, 0.5] }}
+[points]
+spacing = {spacing}
+[[regions]]
+name = "fibre"
+sphere = {{ center = [0.0, 0.0], radius = 0.472034871941 }}
+diffusivity = {contrast:e}
+[[regions]]
+name = "matrix"
+diffusivity = 1
+[[boundaries]]
+face = "left"
+dirichlet = 2
+[[boundaries]]
+face = "right"
+dirichlet = 2.5
+[[boundaries]]
+face = "all"
+neumann = 0
+[output]
+fluxes = true
+"#
+    )
+}
+
+#[test]
+fn fluxes_through_prescribed_values_are_right_where_they_cut_a_stiff_region() {
+    let fluxes = |contrast| {
+        let report = report(&scene(&quarter(contrast, 0.025)));
+        let fluxes = report.fluxes.expect("asked for");
+        [fluxes.boundaries[0].flux, fluxes.boundaries[1].flux]
+    };
+    let [left, right] = fluxes(1e10);
+    assert!(
+        (left + 3.716_354_664_4).abs() < 2e-3 && (right - 3.716_354_664_4).abs() < 2e-3,
+        "{left} {right}"
+    );
+    for contrast in [1e3, 1e6] {
+        let [left, right] = fluxes(contrast);
+        assert!((left + right).abs() < 5e-3, "{contrast:e}: {left} {right}");
+    }
+}
+
+/// Values that differ along the stiff region, a source in it, a flux that is prescribed on it: what it carries is no matter of what is
+/// beside it, and it keeps its nodal values.
+#[test]
+fn stiff_regions_that_carry_large_fluxes_are_exact_beside_soft_ones() {
+    let bar = |source: &str, u: &str, end: &str| {
+        format!(
+            r#"
+dimension = 2
+[domain]
+box = {{ min = [0.0, 0.0], max = [1.0, 1.0] }}
+[points]
+spacing = 0.06
+[[regions]]
+name = "bar"
+box = {{ min = [0.0, 0.0], max = [1.0, 0.43] }}
+diffusivity = 1e6
+source = "{source}"
+exact = "{u}"
+[[regions]]
+name = "soft"
+diffusivity = 1
+exact = "{u}"
+source = "{soft}"
+[[boundaries]]
+face = "left"
+dirichlet = "1"
+[[boundaries]]
+face = "right"
+{end}
+[[boundaries]]
+face = "all"
+neumann = 0
+"#,
+            soft = if source == "0" { "0" } else { "-2" },
+        )
+    };
+    let cases =
+        [("0", "1 + x", "neumann = 1"), ("-2e6", "1 + x^2", "neumann = 2"), ("0", "1 + x", "dirichlet = 2")];
+    for (source, u, end) in cases {
+        let error = report(&scene(&bar(source, u, end))).errors.expect("exact").l2;
+        assert!(error < 1e-9, "{u}, {end}: {error:e}");
+    }
+}
+
+/// Half of a square column, 20 above and 0 beside it: by the series, 9.6647 at (1, 7).
+#[test]
+fn where_two_prescribed_values_meet_their_mean_holds() {
+    let text = r#"
+dimension = 2
+[domain]
+box = { min = [0.0, 0.0], max = [4.0, 8.0] }
+[points]
+spacing = 0.2
+[[regions]]
+name = "column"
+diffusivity = 1
+[[boundaries]]
+face = "top"
+dirichlet = 20
+[[boundaries]]
+face = "right"
+neumann = 0
+[[boundaries]]
+face = "all"
+dirichlet = 0
+[[probes]]
+at = [1.0, 7.0]
+"#;
+    let series: f64 = (0..200)
+        .map(|n| {
+            let a = f64::from(2 * n + 1) * std::f64::consts::PI / 8.0;
+            let up = (-a).exp() * (1.0 - (-14.0 * a).exp()) / (1.0 - (-16.0 * a).exp());
+            20.0 * 4.0 / (8.0 * a) * a.sin() * up
+        })
+        .sum();
+    let probe = with(text, MethodName::Sharp).probes[0].value;
+    assert!((probe - series).abs() < 3e-3, "{probe} for {series}");
+}
+
+#[test]
+fn the_condition_of_a_face_at_a_re_entrant_corner_is_told_on_the_face() {
+    // The wall x = 0.6 above y = 1 has a flux; its lower end is a re-entrant corner.
+    let text = r#"
+dimension = 2
+[domain]
+polygon = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.6, 1.0], [0.6, 1.4], [0.0, 1.4]]
+[points]
+spacing = 0.1
+[[regions]]
+name = "all"
+diffusivity = 1
+exact = "x"
+[[boundaries]]
+face = "all"
+where = "abs(x - 1) > 0.999999"
+dirichlet = "x"
+[[boundaries]]
+face = "all"
+where = "y > 1.0000001"
+neumann = "if(y < 1.3999999, 1, 0)"
+[[boundaries]]
+face = "all"
+neumann = 0
+"#;
+    let error = report(&scene(text)).errors.expect("exact").linf;
+    assert!(error < 1e-11, "{error:e}");
+}
+
+#[test]
+fn spacings_that_fall_to_a_point_are_foreseen_and_built() {
+    let text = |spacing: &str| {
+        format!(
+            r#"
+dimension = 2
+[domain]
+box = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}
+[points]
+spacing = "{spacing}"
+[[regions]]
+name = "all"
+diffusivity = 1
+exact = "x"
+[[boundaries]]
+face = "all"
+dirichlet = "x"
+"#
+        )
+    };
+    for spacing in ["1e-5 + 0.1*sqrt(x^2 + y^2)", "1e-6+0.1*sqrt(x^2+y^2)"] {
+        let scene = scene(&text(spacing));
+        let foreseen = Plan::new(&scene).expect("a plan").predicted.unknowns;
+        let report = report(&scene);
+        let made = report.unknowns as f64;
+        assert!((foreseen / made - 1.0).abs() < 0.3, "{spacing}: {foreseen} for {made}");
+        assert!(report.errors.expect("exact").linf < 1e-10);
+    }
+    let vanishing = scene(&text("0.1*sqrt((x - 0.3)^2 + y^2)"));
+    let message = Plan::new(&vanishing).and_then(|_| solve_scene(&vanishing)).err().expect("refused");
+    assert!(message.to_string().contains("falls to zero at about [0.29999"), "{message}");
+}
