@@ -10,7 +10,7 @@ use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
 use crate::{Condition, InterfaceJump};
 
 /// Where diffusivities and the kinds of conditions beside a vertex are read, over the length of its shortest ray.
-const BESIDE: f64 = 1e-6;
+const BESIDE: f64 = 1e-3;
 
 /// Polynomials along rays that stand for data there have this many degrees more than those of a fit, up to the highest.
 const DEGREES_BEYOND: usize = 4;

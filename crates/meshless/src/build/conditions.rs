@@ -7,8 +7,9 @@ use super::fields::{field, not_finite};
 use crate::Error;
 use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
 
-/// How far from an edge between pieces of the boundary the condition on either is told, in spacings.
-const BESIDE: f64 = 1e-5;
+/// How far from an edge between pieces of the boundary the condition on either is told, in spacings: farther than what a `where` such as
+/// `y < 1e-6` allows for rounding.
+const BESIDE: f64 = 0.02;
 
 /// What of the depth that a step into a re-entrant corner has counts as inside of the domain: on the other side it would be none.
 const INSIDE: f64 = 0.1;

@@ -1,6 +1,6 @@
 //! The surfaces of a scene as points with weights: the boundary by its conditions, and the interfaces by the regions that they part.
 
-use meshless_geometry::{Element, FaceId, Patch, side_patch};
+use meshless_geometry::{Aabb, Element, FaceId, Patch, Shape, side_patch};
 use meshless_interfaces::{Condition, Problem};
 use meshless_neighbors::{CellList, NeighborError};
 
@@ -12,6 +12,11 @@ const BESIDE: f64 = 1e-8;
 
 /// Cells of a grid in which level sets are looked for, a node.
 const CELLS: f64 = 16.0;
+
+/// Distance from a surface, over the diameter of the domain, below which a point is on it; and cosine of the angle between normals from which
+/// on two surfaces run along each other. Rounding.
+const ON_SURFACE: f64 = 1e-9;
+const ALONG: f64 = 1.0 - 1e-9;
 
 /// A point of the boundary with the area that it stands for, the normal out of the domain.
 pub(super) struct Wall<const D: usize> {
@@ -75,16 +80,22 @@ fn walls<const D: usize>(
 ) -> Vec<Wall<D>> {
     let domain = problem.domain;
     let bounds = domain.bounds();
-    let mut faces: Vec<(FaceId, Vec<Patch<'_, D>>)> = Vec::new();
+    let mut faces: Vec<(FaceId, Vec<Patch<'_, D>>, Covered<'_, D>)> = Vec::new();
     if let Some(outer) = domain.outer_box() {
-        faces.extend((0..2 * D).map(|k| (FaceId(k as u16), vec![side_patch(&outer, k / 2, k % 2 == 1)])));
+        let side = |k: usize| vec![side_patch(&outer, k / 2, k % 2 == 1)];
+        faces.extend((0..2 * D).map(|k| (FaceId(k as u16), side(k), Covered::by_nothing())));
     }
-    let curved = domain.curved_faces().into_iter();
-    faces.extend(curved.map(|(face, shape, _)| (face, shape.patches(&bounds, size))));
+    for (face, shape, _) in domain.curved_faces() {
+        let of_leaf = |(patches, covered)| (face, patches, covered);
+        faces.extend(leaf_patches(shape, &bounds, size).into_iter().map(of_leaf));
+    }
     let mut walls = Vec::new();
-    for (face, patches) in &faces {
+    for (face, patches, covered) in &faces {
         // Which way is out, which condition holds, and what is inside.
         let kind = |element: &Element<D>| -> Option<(bool, usize, u16)> {
+            if covered.holds(element) {
+                return None;
+            }
             let inside = [-step, step].map(|t| domain.contains(&beside(element, t), 0.0));
             let along = match inside {
                 [true, false] => true,
@@ -116,40 +127,92 @@ fn seams<const D: usize>(problem: &Problem<'_, D>, rule: &Rule<'_, D>, size: f64
     let mut seams = Vec::new();
     for surface in 0..problem.regions.len() as u16 - 1 {
         let Some(shape) = problem.regions.shape(surface) else { continue };
-        // Which regions are behind and before the surface, and which of them conducts less.
-        let kind = |element: &Element<D>| -> Option<([u16; 2], usize)> {
-            let places = [-step, step].map(|t| beside(element, t));
-            let sides = [0, 1].map(|k| problem.regions.label(&places[k], 0.0));
-            // Where two shapes have a surface in common it is that of the one named first.
-            let own = sides[0] != sides[1] && sides[0].min(sides[1]) == surface;
-            if !own || !places.iter().all(|x| problem.domain.contains(x, 0.0)) {
-                return None;
-            }
-            let eta = [0, 1].map(|k| problem.materials[sides[k] as usize].diffusivity.at(&places[k]));
-            Some((sides, usize::from(eta[1] < eta[0])))
-        };
-        for patch in shape.patches(&bounds, size) {
-            for (element, (sides, soft)) in rule.points(&patch, &kind) {
-                let from = beside(&element, if soft == 0 { -step } else { step });
-                let turned = sides[0] > sides[1];
-                let turn = if turned { -1.0 } else { 1.0 };
-                let between = [sides[0].min(sides[1]), sides[0].max(sides[1])];
-                // That the fluxes on the two sides differ by so much holds for either direction of the normal.
-                let jump = problem
-                    .jump_between(between[0], between[1])
-                    .and_then(|(jump, _)| jump.flux.as_ref())
-                    .map_or(0.0, |flux| flux.at(&element.at));
-                seams.push(Seam {
-                    element: Element { normal: element.normal.map(|n| turn * n), ..element },
-                    between,
-                    soft: if turned { 1 - soft } else { soft },
-                    from,
-                    jump,
-                });
-            }
+        for (patches, covered) in leaf_patches(shape, &bounds, size) {
+            seams_of(problem, rule, (surface, &patches, &covered), step, &mut seams);
         }
     }
     seams
+}
+
+/// The interfaces along the surface of one primitive of a region's shape.
+fn seams_of<const D: usize>(
+    problem: &Problem<'_, D>,
+    rule: &Rule<'_, D>,
+    (surface, patches, covered): (u16, &[Patch<'_, D>], &Covered<'_, D>),
+    step: f64,
+    seams: &mut Vec<Seam<D>>,
+) {
+    // Which regions are behind and before the surface, and which of them conducts less.
+    let kind = |element: &Element<D>| -> Option<([u16; 2], usize)> {
+        if covered.holds(element) {
+            return None;
+        }
+        let places = [-step, step].map(|t| beside(element, t));
+        let sides = [0, 1].map(|k| problem.regions.label(&places[k], 0.0));
+        // Where two shapes have a surface in common it is that of the one named first.
+        let own = sides[0] != sides[1] && sides[0].min(sides[1]) == surface;
+        if !own || !places.iter().all(|x| problem.domain.contains(x, 0.0)) {
+            return None;
+        }
+        let eta = [0, 1].map(|k| problem.materials[sides[k] as usize].diffusivity.at(&places[k]));
+        Some((sides, usize::from(eta[1] < eta[0])))
+    };
+    for patch in patches {
+        for (element, (sides, soft)) in rule.points(patch, &kind) {
+            let from = beside(&element, if soft == 0 { -step } else { step });
+            let turned = sides[0] > sides[1];
+            let turn = if turned { -1.0 } else { 1.0 };
+            let between = [sides[0].min(sides[1]), sides[0].max(sides[1])];
+            // That the fluxes on the two sides differ by so much holds for either direction of the normal.
+            let jump = problem
+                .jump_between(between[0], between[1])
+                .and_then(|(jump, _)| jump.flux.as_ref())
+                .map_or(0.0, |flux| flux.at(&element.at));
+            seams.push(Seam {
+                element: Element { normal: element.normal.map(|n| turn * n), ..element },
+                between,
+                soft: if turned { 1 - soft } else { soft },
+                from,
+                jump,
+            });
+        }
+    }
+}
+
+/// The primitives of a shape that come before one: where its surface runs along theirs, it is theirs.
+struct Covered<'a, const D: usize> {
+    before: Vec<&'a Shape<D>>,
+    distance: f64,
+}
+
+impl<const D: usize> Covered<'_, D> {
+    fn by_nothing() -> Self {
+        Self { before: Vec::new(), distance: 0.0 }
+    }
+
+    fn holds(&self, element: &Element<D>) -> bool {
+        self.before.iter().any(|leaf| {
+            let slope = leaf.gradient(&element.at);
+            let length = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let along: f64 = slope.iter().zip(&element.normal).map(|(a, b)| a * b).sum();
+            leaf.level(&element.at).abs() <= self.distance * length && along.abs() >= ALONG * length
+        })
+    }
+}
+
+/// The surfaces of the primitives of a shape, each with those before it.
+fn leaf_patches<'a, const D: usize>(
+    shape: &'a Shape<D>,
+    bounds: &Aabb<D>,
+    size: f64,
+) -> Vec<(Vec<Patch<'a, D>>, Covered<'a, D>)> {
+    let leaves: Vec<&Shape<D>> = shape.leaves().into_iter().map(|(leaf, _)| leaf).collect();
+    let distance = ON_SURFACE * bounds.diameter();
+    let of_leaf = |k: usize| {
+        let before = leaves[..k].to_vec();
+        (leaves[k].patches(bounds, size), Covered { before, distance })
+    };
+    (0..leaves.len()).map(of_leaf).collect()
 }
 
 fn beside<const D: usize>(element: &Element<D>, t: f64) -> [f64; D] {
