@@ -135,7 +135,7 @@ impl<const D: usize> Domain<D> {
     }
 
     /// About the distance from the boundary, negative inside: the level over the length of its gradient.
-    pub fn distance_estimate(&self, x: &[f64; D]) -> f64 {
+    pub(crate) fn distance_estimate(&self, x: &[f64; D]) -> f64 {
         let level = self.level(x);
         let slope = norm(&self.gradient(x));
         if slope > 0.0 { level / slope } else { level }

@@ -214,7 +214,7 @@ fn corners<const D: usize>(
     (0..1_usize << axes.len()).map(move |code| {
         let mut x = *middle;
         for (bit, &k) in axes.iter().enumerate() {
-            x[k] += if code >> bit & 1 == 1 { offset[k] } else { -offset[k] };
+            x[k] += if (code >> bit) & 1 == 1 { offset[k] } else { -offset[k] };
         }
         x
     })

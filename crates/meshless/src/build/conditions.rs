@@ -11,8 +11,11 @@ use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
 /// `y < 1e-6` allows for rounding.
 const BESIDE: f64 = 0.02;
 
-/// What of the depth that a step into a re-entrant corner has counts as inside of the domain: on the other side it would be none.
-const INSIDE: f64 = 0.1;
+/// How far on both sides of a piece it is looked whether it is one, over the least of what the steps along it come away from the others.
+const ACROSS: f64 = 0.1;
+
+/// Other pieces at a node of which each may lie either way: more never meet but in the tips of cones.
+const MOST_PIECES: usize = 6;
 
 /// The conditions in the order of the scene: the first whose face and `where` match counts.
 pub(crate) struct Boundary<const D: usize> {
@@ -147,7 +150,7 @@ impl<const D: usize> Boundary<D> {
 
 /// Where a node is, as its place on one of several pieces of the boundary is told: a little away from the edge between them. A
 /// `where` that holds on the one piece alone, or data that jump at the edge, then say nothing of the others. A piece goes on against the
-/// normal of the other one, at a re-entrant edge along it.
+/// normal of another one, at a re-entrant edge along it.
 fn beside_edges<const D: usize>(
     domain: &Domain<D>,
     cloud: &Cloud<D>,
@@ -157,16 +160,32 @@ fn beside_edges<const D: usize>(
     let i = node.node as usize;
     let at = cloud.points()[i];
     let reach = BESIDE * cloud.spacing()[i];
-    let mut x = at;
-    for other in node.touches.iter().filter(|other| other.normal != touch.normal) {
-        let along: f64 = (0..D).map(|k| other.normal[k] * touch.normal[k]).sum();
-        let step: [f64; D] = std::array::from_fn(|k| -reach * (other.normal[k] - along * touch.normal[k]));
-        let depth = step.iter().map(|s| s * s).sum::<f64>() / reach;
-        let is_inside = domain.distance_estimate(&std::array::from_fn(|k| at[k] + step[k])) < -INSIDE * depth;
-        let sign = if is_inside { -1.0 } else { 1.0 };
-        x.iter_mut().zip(step).for_each(|(x, s)| *x += sign * s);
+    let others = node.touches.iter().filter(|other| other.normal != touch.normal);
+    let steps: Vec<[f64; D]> = others
+        .map(|other| {
+            let along: f64 = (0..D).map(|k| other.normal[k] * touch.normal[k]).sum();
+            std::array::from_fn(|k| -reach * (other.normal[k] - along * touch.normal[k]))
+        })
+        .collect();
+    if steps.is_empty() {
+        return at;
     }
-    x
+    let shortest = steps.iter().map(|s| s.iter().map(|s| s * s).sum::<f64>()).fold(f64::INFINITY, f64::min);
+    let depth = ACROSS * shortest / reach;
+    let place = |signs: usize| {
+        let mut x = at;
+        for (which, step) in steps.iter().enumerate() {
+            let sign = if (signs >> which) & 1 == 0 { 1.0 } else { -1.0 };
+            x.iter_mut().zip(step).for_each(|(x, s)| *x += sign * s);
+        }
+        x
+    };
+    let is_on_piece = |x: &[f64; D]| {
+        let inside = |t: f64| domain.contains(&std::array::from_fn(|k| x[k] + t * touch.normal[k]), 0.0);
+        inside(-depth) && !inside(depth)
+    };
+    let most = 1 << steps.len().min(MOST_PIECES);
+    (0..most).map(place).find(is_on_piece).unwrap_or_else(|| place(0))
 }
 
 impl<const D: usize> BoundaryData<D> for Boundary<D> {
