@@ -190,7 +190,7 @@ fn errors(report: &Report) {
 fn seconds(report: &Report) {
     let s = &report.seconds;
     say!(
-        "seconds     {:.3}: points {:.3}, neighbors {:.3}, stencils {:.3}, assembly {:.3}, solve {:.3}, post {:.3}, estimate {:.3}",
+        "seconds     {:.3}: points {:.3}, neighbors {:.3}, stencils {:.3}, assembly {:.3}, solve {:.3}, post {:.3}, balance {:.3}, estimate {:.3}",
         s.total,
         s.points,
         s.neighbors,
@@ -198,6 +198,7 @@ fn seconds(report: &Report) {
         s.assembly,
         s.solve,
         s.post,
+        s.balance,
         s.estimate
     );
 }

@@ -7,7 +7,7 @@ use std::process::Command;
 const TOLERANCE: f64 = 0.02;
 
 /// Lines whose numbers are times or round-off, and differ from run to run.
-const VARYING: [&str; 3] = ["seconds", "solver", "predicted"];
+const VARYING: [&str; 4] = ["seconds", "solver", "predicted", "balance"];
 
 fn readme() -> String {
     std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).expect("README.md")

@@ -2,6 +2,7 @@
 
 use meshless_sparse::{DifferenceMatrix, Split};
 
+use crate::gfdm::CellFlows;
 use crate::{Corner, GradientRow, MethodError, Problem, Sample, SystemSolution, gradient};
 
 /// A meshless discretisation of an elliptic interface problem.
@@ -34,6 +35,15 @@ pub trait Method<const D: usize>: Sync {
         _solution: &SystemSolution,
         _points: &[[f64; D]],
     ) -> Result<Option<Vec<Option<Sample<D>>>>, MethodError> {
+        Ok(None)
+    }
+
+    /// The fluxes of a solution as balances over cells have them; `None` for methods without such balances.
+    fn cell_flows(
+        &self,
+        _problem: &Problem<'_, D>,
+        _solution: &SystemSolution,
+    ) -> Result<Option<CellFlows<D>>, MethodError> {
         Ok(None)
     }
 }

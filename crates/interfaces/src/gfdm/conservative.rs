@@ -16,7 +16,7 @@ const SEARCH_GROWTH: f64 = 1.3;
 
 /// Smallest face that counts, relative to the largest of its cell: below it a face is round-off of a degenerate
 /// Voronoi vertex, and its flux would be noise.
-const NEGLIGIBLE_FACE: f64 = 1e-12;
+pub(super) const NEGLIGIBLE_FACE: f64 = 1e-12;
 
 /// The balance of one cell.
 #[derive(Debug, Clone)]
@@ -30,7 +30,7 @@ pub(super) struct CellRow {
 
 /// Builds the cells and their balances.
 pub(super) struct CellBalance<'a, const D: usize> {
-    problem: &'a Problem<'a, D>,
+    pub(super) problem: &'a Problem<'a, D>,
     planes: Vec<Plane<D>>,
     levels: Vec<(FaceId, Level<'a, D>)>,
     index: CellList<'a, D>,
@@ -144,7 +144,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     ///
     /// With `q` the flux towards j on the near side of an interface at the middle, `q + b` that on the far side and
     /// `a` the jump of u, elimination of the values there leaves `q = H/d (u_j - u_i - a) - b eta_i/(eta_i + eta_j)`.
-    fn inner_face(&self, i: usize, j: u32, face: &CellFace<D>, row: &mut CellRow) {
+    pub(super) fn inner_face(&self, i: usize, j: u32, face: &CellFace<D>, row: &mut CellRow) {
         let problem = self.problem;
         let points = problem.cloud.points();
         let (here, there) = (problem.eta[i], problem.eta[j as usize]);
@@ -188,7 +188,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     /// Conditions on the flux are taken at the centroid of the piece. Those that hold the value are taken at the foot
     /// of the node on it, where the node itself is if it lies on the boundary: the straight way from the node to the
     /// foot, of length d, has the resistance `d / eta`.
-    fn boundary_face(
+    pub(super) fn boundary_face(
         &self,
         i: usize,
         id: FaceId,

@@ -6,6 +6,7 @@
 mod boundary;
 mod conservative;
 mod diffusivity;
+mod flows;
 mod params;
 mod select;
 mod strong;
@@ -17,9 +18,10 @@ use meshless_sparse::DifferenceMatrix;
 use crate::method::{Counts, Discretization, Method, RowKind};
 use crate::operator_rows::OperatorRows;
 use crate::parallel;
-use crate::{MethodError, Problem};
+use crate::{MethodError, Problem, SystemSolution};
 use boundary::BoundaryRow;
 use conservative::{CellBalance, CellRow};
+pub use flows::{CellFlows, CellSeam, CellWall};
 pub use params::{GfdmParams, Selection, StrongParams};
 pub(crate) use strong::add_correction;
 
@@ -36,6 +38,15 @@ impl<const D: usize> Method<D> for Gfdm {
         problem.without_slits("gfdm")?;
         self.check(problem)?;
         Parts::build(problem, &self.params)?.assemble(problem)
+    }
+
+    fn cell_flows(
+        &self,
+        problem: &Problem<'_, D>,
+        solution: &SystemSolution,
+    ) -> Result<Option<CellFlows<D>>, MethodError> {
+        let balances = self.params.selection != Selection::None;
+        balances.then(|| flows::cell_flows(problem, solution)).transpose()
     }
 }
 

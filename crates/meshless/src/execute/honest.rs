@@ -10,6 +10,12 @@ use crate::scene::Scene;
 /// How many times the estimate must be left over where the fluxes are known in one way only: they are less accurate than u.
 const ALONE: f64 = 10.0;
 
+/// The same where a better solution, or better fits, leave as much over.
+const MORE: f64 = 3.0;
+
+/// Part of what a solution leaves over below which the better one shows that it is only the flux that is less accurate than u.
+const GETS_BETTER: f64 = 0.5;
+
 /// Something that the error is at least as large as.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Reason {
@@ -37,8 +43,9 @@ pub(crate) fn suspects<const D: usize>(
 
 /// What the balance says, in view of the fluxes of a better solution, or by better fits.
 ///
-/// Fluxes are known less accurately than u. But where a higher degree makes the solution better it leaves less over. So what counts is
-/// what both leave over, less what is in doubt; where there is no other, that it is much more than the estimate.
+/// Fluxes are known less accurately than u: a smooth solution on few nodes leaves a hundred times the error of u over. But then one
+/// of a higher degree leaves much less. So what counts is what both leave over, less what is in doubt; where there is no other, that it
+/// is much more than the estimate.
 pub(crate) fn by_balance<const D: usize>(
     scene: &Scene,
     ledger: &Ledger<D>,
@@ -50,7 +57,8 @@ pub(crate) fn by_balance<const D: usize>(
     let other = other.map(|other| ledger.left_over(other));
     let says = |first: LeftOver, second: Option<LeftOver>, estimated: f64| {
         let sure = match second {
-            Some(second) => first.relative.min(second.relative) - first.doubt.max(second.doubt),
+            Some(second) if second.relative < GETS_BETTER * first.relative => return None,
+            Some(second) => (first.relative.min(second.relative) - first.doubt.max(second.doubt)) / MORE,
             None => first.relative / ALONE - first.doubt,
         };
         (sure > estimated).then_some(first.relative)

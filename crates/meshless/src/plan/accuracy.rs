@@ -46,6 +46,10 @@ impl AccuracyPlan {
             why: format!("a tolerance of {tolerance:.1e}: {why}"),
         };
         let jumps = survey.has_interface();
+        if jumps && scene.is_labelled() && scene.output.fluxes {
+            let why = "interfaces are known from labels only: balances have the fluxes";
+            return choice(MethodName::GfdmHybrid, None, why);
+        }
         // Fluxes take gradients up to interfaces.
         // Singular corners take functions of their own.
         if jumps && tolerance >= COARSE && !scene.output.fluxes && !survey.has_corners(scene) {

@@ -1,5 +1,6 @@
 //! Decisions: method, solver, stages.
 
+use meshless_interfaces::gfdm::Selection;
 use meshless_interfaces::sharp::Sharp;
 use meshless_sparse::{
     Candidate, MultigridParams, PreconditionerKind, Restriction, SmootherKind, SolverKind, SolverParams,
@@ -189,11 +190,18 @@ pub(super) fn solver(scene: &Scene, survey: &Survey, method: MethodName, unknown
     }
 }
 
-/// Whether the gradients of a method are good up to the surfaces that a flux goes through: fits to nodal values of first order at an
-/// interface give fluxes there that are off by up to 40 %.
-fn carries_fluxes(survey: &Survey, method: &MethodPlan) -> bool {
+/// Whether a method knows the fluxes through a surface: by gradients that are good up to it (fits to nodal values of first order at an
+/// interface give fluxes there that are off by up to 40 %), or by balances over cells. Where interfaces are known from labels only, gradients
+/// up to them are worthless.
+fn carries_fluxes(scene: &Scene, survey: &Survey, method: &MethodPlan) -> bool {
     let slits = survey.has(|e| matches!(e, Effect::Slits));
-    matches!(method.params, MethodParams::Sharp(_)) || !survey.has_interface() && !slits
+    let labels = scene.is_labelled() || scene.method.options.interfaces == Some(InterfacesName::Labels);
+    match &method.params {
+        MethodParams::Gfdm(gfdm) if gfdm.selection == Selection::All => true,
+        MethodParams::Gfdm(gfdm) if labels && gfdm.selection != Selection::None => true,
+        MethodParams::Sharp(_) => !labels,
+        _ => !survey.has_interface() && !slits,
+    }
 }
 
 pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Vec<Stage>, Vec<Skipped>) {
@@ -249,7 +257,11 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(exact, Stage::Errors, "the scene has no exact solution");
     decide(!scene.probes.is_empty(), Stage::Probes, "the scene has no probes");
     if scene.output.fluxes {
-        decide(carries_fluxes(survey, method), Stage::Fluxes, "the method has no gradients up to interfaces");
+        decide(
+            carries_fluxes(scene, survey, method),
+            Stage::Fluxes,
+            "the method has no gradients up to interfaces",
+        );
     }
     decide(true, Stage::Balance, "");
     decide(true, Stage::Estimate, "");

@@ -165,7 +165,11 @@ impl Plan {
         if scene.output.fluxes && !stages.contains(&Stage::Fluxes) {
             let message =
                 format!("`output.fluxes`: \"{}\" has no gradients up to interfaces", method.name.as_str());
-            let help = "take the method \"sharp\", which has, or remove the key";
+            let help = if scene.is_labelled() {
+                "take the method \"gfdm-hybrid\" or \"gfdm-conservative\", whose balances have the fluxes, or remove the key"
+            } else {
+                "take the method \"sharp\", which has, or \"gfdm-conservative\", or remove the key"
+            };
             return Err(scene.domain.place.error(message, help).into());
         }
         Ok(Self {

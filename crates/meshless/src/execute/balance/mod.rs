@@ -11,6 +11,7 @@ mod surfaces;
 
 use std::collections::BTreeMap;
 
+use meshless_interfaces::gfdm::{CellFlows, Selection};
 use meshless_interfaces::{Condition, Problem, Sample, Sampler, SystemSolution};
 
 use super::samples::{by_fits, samples};
@@ -28,6 +29,9 @@ const LEVELS: usize = 8;
 /// Degree of the fits that those of the second degree are compared with.
 const OTHER_DEGREE: usize = 3;
 
+/// Part of a flux by which the quadrature may be off: fluxes at interfaces are taken a little beside them.
+const QUADRATURE: f64 = 1e-8;
+
 /// Round-off of a slope, over the size of u and the distance of nodes.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -38,6 +42,7 @@ pub(crate) struct Ledger<const D: usize> {
     stored: Option<Vec<Content>>,
     names: Vec<String>,
     entries: Vec<String>,
+    boundary: Boundary<D>,
     spacing: f64,
 }
 
@@ -48,6 +53,8 @@ pub(crate) struct Flows {
     /// Of the whole, and of every region.
     whole: Flow,
     regions: Vec<Flow>,
+    /// Sources and what is stored as cells have them, where the fluxes are those of cells.
+    contents: Option<(Vec<Content>, Option<Vec<Content>>)>,
 }
 
 /// What enters a region.
@@ -96,6 +103,7 @@ impl<const D: usize> Ledger<D> {
             sources: bodies.iter().enumerate().map(source).collect(),
             stored: solved.system.rates.as_ref().map(stored),
             surfaces,
+            boundary,
             names: scene.regions.iter().map(|region| region.name.clone()).collect(),
             entries: scene.boundaries.iter().map(|spec| spec.face.clone()).collect(),
             spacing: solved.spacing(),
@@ -109,6 +117,9 @@ impl<const D: usize> Ledger<D> {
         problem: &Problem<'_, D>,
         system: &SystemSolution,
     ) -> Result<Flows, Error> {
+        if let Some(cells) = method.build().cell_flows(problem, system)? {
+            return Ok(self.of_cells(problem, system, &cells));
+        }
         let found = samples(method, problem, system, &self.places())?;
         Ok(self.summed(problem, &system.u, &found))
     }
@@ -120,7 +131,8 @@ impl<const D: usize> Ledger<D> {
         problem: &Problem<'_, D>,
         system: &SystemSolution,
     ) -> Result<Option<Flows>, Error> {
-        if matches!(method, MethodParams::Sharp(_)) {
+        let cells = matches!(method, MethodParams::Gfdm(gfdm) if gfdm.selection != Selection::None);
+        if cells || matches!(method, MethodParams::Sharp(_)) {
             return Ok(None);
         }
         let found = by_fits(&Sampler::of_degree(problem, &system.u, OTHER_DEGREE)?, &self.places())?;
@@ -134,15 +146,7 @@ impl<const D: usize> Ledger<D> {
     }
 
     fn summed(&self, problem: &Problem<'_, D>, u: &[f64], samples: &[Option<Sample<D>>]) -> Flows {
-        let entries = self.entries.iter().enumerate();
-        let mut flows = Flows {
-            boundaries: entries
-                .map(|(entry, face)| BoundaryFlux { face: face.clone(), entry, flux: 0.0, area: 0.0 })
-                .collect(),
-            interfaces: Vec::new(),
-            whole: Flow::default(),
-            regions: vec![Flow::default(); self.names.len()],
-        };
+        let mut flows = self.nothing();
         let largest = u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let round_off = ROUND_OFF * largest / self.spacing;
         let mut samples = samples.iter();
@@ -175,17 +179,84 @@ impl<const D: usize> Ledger<D> {
             }
             flows.whole.jumps -= jump;
             flows.whole.size += jump.abs();
-            let names = || seam.between.map(|region| self.names[region as usize].clone()).to_vec();
-            let known = flows.interfaces.iter().position(|known| {
-                known.between.iter().zip(seam.between).all(|(name, k)| *name == self.names[k as usize])
-            });
-            let known = known.unwrap_or_else(|| {
-                flows.interfaces.push(InterfaceFlux { between: names(), flux: 0.0, area: 0.0 });
-                flows.interfaces.len() - 1
-            });
-            flows.interfaces[known].flux += soft;
-            flows.interfaces[known].area += area;
+            self.add_to_interface(&mut flows, seam.between, soft, area);
         }
+        flows
+    }
+
+    fn nothing(&self) -> Flows {
+        let entries = self.entries.iter().enumerate();
+        Flows {
+            boundaries: entries
+                .map(|(entry, face)| BoundaryFlux { face: face.clone(), entry, flux: 0.0, area: 0.0 })
+                .collect(),
+            interfaces: Vec::new(),
+            whole: Flow::default(),
+            regions: vec![Flow::default(); self.names.len()],
+            contents: None,
+        }
+    }
+
+    fn add_to_interface(&self, flows: &mut Flows, between: [u16; 2], flux: f64, area: f64) {
+        let names = between.map(|region| self.names[region as usize].clone());
+        match flows.interfaces.iter_mut().find(|known| known.between == names) {
+            Some(known) => {
+                known.flux += flux;
+                known.area += area;
+            }
+            None => flows.interfaces.push(InterfaceFlux { between: names.to_vec(), flux, area }),
+        }
+    }
+
+    /// Fluxes as balances over cells have them, with sources and what is stored as these have them.
+    fn of_cells(&self, problem: &Problem<'_, D>, system: &SystemSolution, cells: &CellFlows<D>) -> Flows {
+        let mut flows = self.nothing();
+        for wall in &cells.walls {
+            let entry = self.boundary.entry(wall.face, &wall.at);
+            if let Some(boundary) = entry.map(|entry| &mut flows.boundaries[entry]) {
+                boundary.flux += wall.flux;
+                boundary.area += wall.area;
+            }
+            for flow in [&mut flows.whole, &mut flows.regions[wall.region as usize]] {
+                flow.walls += wall.flux;
+                flow.size += wall.flux.abs();
+            }
+        }
+        // A region conducts as its nodes do on average.
+        let mut sums = vec![(0.0, 0.0); self.names.len()];
+        for (eta, &label) in problem.eta.iter().zip(problem.labels) {
+            let (sum, count) = &mut sums[label as usize];
+            (*sum, *count) = (*sum + eta, *count + 1.0);
+        }
+        let conducts: Vec<f64> =
+            sums.into_iter().map(|(sum, count): (f64, f64)| sum / count.max(1.0)).collect();
+        for seam in &cells.seams {
+            let flow = &mut flows.regions[seam.between[0] as usize];
+            flow.seams -= seam.flux;
+            flow.size += seam.flux.abs();
+            flows.whole.jumps -= seam.flux;
+            // Both sides are listed; the totals are those of the one that conducts less.
+            let [here, there] = seam.between.map(|k| conducts[k as usize]);
+            let first = seam.between[0] < seam.between[1];
+            if here < there || (here == there && first) {
+                let between = [seam.between[0].min(seam.between[1]), seam.between[0].max(seam.between[1])];
+                self.add_to_interface(
+                    &mut flows,
+                    between,
+                    if first { -seam.flux } else { seam.flux },
+                    seam.area,
+                );
+            }
+        }
+        let by_region = |values: &[f64]| -> Vec<Content> {
+            let mut sums = vec![Content::default(); self.names.len()];
+            for ((value, volume), &label) in values.iter().zip(&cells.volumes).zip(problem.labels) {
+                sums[label as usize].value += value * volume;
+            }
+            sums
+        };
+        let sources = problem.source.map_or_else(|| vec![Content::default(); self.names.len()], by_region);
+        flows.contents = Some((sources, system.rates.as_deref().map(by_region)));
         flows
     }
 
@@ -202,25 +273,36 @@ impl<const D: usize> Ledger<D> {
             let absolute = flow.walls + flow.seams + flow.jumps + source.value - held.value;
             let size = flow.size + made + kept;
             let share = |value: f64| if size > 0.0 { value / size } else { 0.0 };
-            let doubt = source.doubt + held.doubt + flow.round_off;
+            let doubt = source.doubt + held.doubt + flow.round_off + QUADRATURE * flow.size;
             LeftOver { absolute, relative: share(absolute.abs()), doubt: share(doubt) }
         };
-        let regions = flows.regions.iter().enumerate().map(|(k, flow)| {
-            over(flow, &self.sources[k..=k], self.stored.as_ref().map(|stored| &stored[k..=k]))
-        });
-        (over(&flows.whole, &self.sources, self.stored.as_deref()), regions.collect())
+        let (sources, held) = self.contents(flows);
+        let regions = flows
+            .regions
+            .iter()
+            .enumerate()
+            .map(|(k, flow)| over(flow, &sources[k..=k], held.map(|stored| &stored[k..=k])));
+        (over(&flows.whole, sources, held), regions.collect())
+    }
+
+    /// Sources, and what is stored.
+    fn contents<'a>(&'a self, flows: &'a Flows) -> (&'a [Content], Option<&'a [Content]>) {
+        match &flows.contents {
+            Some((sources, stored)) => (sources, stored.as_deref()),
+            None => (&self.sources, self.stored.as_deref()),
+        }
     }
 
     /// The balance in figures.
     pub(crate) fn report(&self, flows: &Flows) -> BalanceReport {
         let (whole, regions) = self.left_over(flows);
         let jumps = flows.whole.jumps;
-        let stored = self.stored.as_ref();
-        let named = self.names.iter().cloned().zip(&self.sources);
+        let (sources, stored) = self.contents(flows);
+        let named = self.names.iter().cloned().zip(sources);
         BalanceReport {
             into: flows.boundaries.clone(),
             sources: SourceReport {
-                total: self.sources.iter().map(|c| c.value).sum::<f64>() + jumps,
+                total: sources.iter().map(|c| c.value).sum::<f64>() + jumps,
                 regions: named.map(|(name, content)| (name, content.value)).collect(),
                 flux_jumps: jumps,
             },
@@ -232,7 +314,7 @@ impl<const D: usize> Ledger<D> {
                     let balance = RegionBalance {
                         boundaries: flow.walls,
                         interfaces: flow.seams,
-                        sources: self.sources[k].value,
+                        sources: sources[k].value,
                         stored: stored.map(|stored| stored[k].value),
                         left_over: left.absolute,
                         relative: left.relative,

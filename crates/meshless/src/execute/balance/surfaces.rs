@@ -1,14 +1,14 @@
 //! The surfaces of a scene as points with weights: the boundary by its conditions, and the interfaces by the regions that they part.
 
-use meshless_geometry::{Aabb, Element, FaceId, Patch, Shape, side_patch};
+use meshless_geometry::{Aabb, Element, FaceId, Patch, Shape, TIE, side_patch};
 use meshless_interfaces::{Condition, Problem};
 use meshless_neighbors::{CellList, NeighborError};
 
 use super::pieces::Rule;
 use crate::execute::Boundary;
 
-/// How far beside a surface its sides are told, in spacings: ten times the distance at which a node counts as on it.
-const BESIDE: f64 = 1e-8;
+/// How far beside a surface its sides are told, in spacings: twice the distance at which a node counts as on it.
+const BESIDE: f64 = 2.0 * TIE;
 
 /// Cells of a grid in which level sets are looked for, a node.
 const CELLS: f64 = 16.0;
@@ -63,11 +63,7 @@ impl<const D: usize> Surfaces<D> {
         let rule = Rule { spacing, least, levels };
         let bounds = problem.domain.bounds();
         let size = (bounds.measure() / (CELLS * problem.cloud.len() as f64)).powf(1.0 / D as f64);
-        let step = BESIDE * least;
-        Ok(Self {
-            walls: walls(problem, boundary, &rule, size, step),
-            seams: seams(problem, &rule, size, step),
-        })
+        Ok(Self { walls: walls(problem, boundary, &rule, size), seams: seams(problem, &rule, size) })
     }
 }
 
@@ -76,7 +72,6 @@ fn walls<const D: usize>(
     boundary: &Boundary<D>,
     rule: &Rule<'_, D>,
     size: f64,
-    step: f64,
 ) -> Vec<Wall<D>> {
     let domain = problem.domain;
     let bounds = domain.bounds();
@@ -96,6 +91,7 @@ fn walls<const D: usize>(
             if covered.holds(element) {
                 return None;
             }
+            let step = BESIDE * (rule.spacing)(&element.at);
             let inside = [-step, step].map(|t| domain.contains(&beside(element, t), 0.0));
             let along = match inside {
                 [true, false] => true,
@@ -108,6 +104,7 @@ fn walls<const D: usize>(
         for patch in patches {
             for (element, (along, entry, region)) in rule.points(patch, &kind) {
                 let out = if along { 1.0 } else { -1.0 };
+                let step = BESIDE * (rule.spacing)(&element.at);
                 let element = Element { normal: element.normal.map(|n| out * n), ..element };
                 walls.push(Wall {
                     entry,
@@ -122,13 +119,13 @@ fn walls<const D: usize>(
     walls
 }
 
-fn seams<const D: usize>(problem: &Problem<'_, D>, rule: &Rule<'_, D>, size: f64, step: f64) -> Vec<Seam<D>> {
+fn seams<const D: usize>(problem: &Problem<'_, D>, rule: &Rule<'_, D>, size: f64) -> Vec<Seam<D>> {
     let bounds = problem.domain.bounds();
     let mut seams = Vec::new();
     for surface in 0..problem.regions.len() as u16 - 1 {
         let Some(shape) = problem.regions.shape(surface) else { continue };
         for (patches, covered) in leaf_patches(shape, &bounds, size) {
-            seams_of(problem, rule, (surface, &patches, &covered), step, &mut seams);
+            seams_of(problem, rule, (surface, &patches, &covered), &mut seams);
         }
     }
     seams
@@ -139,7 +136,6 @@ fn seams_of<const D: usize>(
     problem: &Problem<'_, D>,
     rule: &Rule<'_, D>,
     (surface, patches, covered): (u16, &[Patch<'_, D>], &Covered<'_, D>),
-    step: f64,
     seams: &mut Vec<Seam<D>>,
 ) {
     // Which regions are behind and before the surface, and which of them conducts less.
@@ -147,6 +143,7 @@ fn seams_of<const D: usize>(
         if covered.holds(element) {
             return None;
         }
+        let step = BESIDE * (rule.spacing)(&element.at);
         let places = [-step, step].map(|t| beside(element, t));
         let sides = [0, 1].map(|k| problem.regions.label(&places[k], 0.0));
         // Where two shapes have a surface in common it is that of the one named first.
@@ -159,6 +156,7 @@ fn seams_of<const D: usize>(
     };
     for patch in patches {
         for (element, (sides, soft)) in rule.points(patch, &kind) {
+            let step = BESIDE * (rule.spacing)(&element.at);
             let from = beside(&element, if soft == 0 { -step } else { step });
             let turned = sides[0] > sides[1];
             let turn = if turned { -1.0 } else { 1.0 };

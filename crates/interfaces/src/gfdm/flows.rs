@@ -1,0 +1,121 @@
+//! Fluxes of a solution as balances over cells have them: through every piece of the boundary, and between regions.
+//!
+//! Where u is prescribed at a node, what enters there is what the balance of its cell lacks, its reaction. So where all nodes have balances
+//! what enters and arises is what is stored and leaves, to round-off; with stencils among them what is left over is what these leave.
+
+use meshless_cells::FaceKind;
+use meshless_geometry::FaceId;
+
+use super::conservative::{BalanceScratch, CellBalance, CellRow, NEGLIGIBLE_FACE};
+use crate::problem::Condition;
+use crate::{MethodError, Problem, SystemSolution, parallel};
+
+/// What enters through a piece of the boundary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellWall<const D: usize> {
+    /// Its face, and its centroid.
+    pub face: FaceId,
+    /// See above.
+    pub at: [f64; D],
+    /// The region inside.
+    pub region: u16,
+    /// What enters.
+    pub flux: f64,
+    /// Length or area; 1 on the line.
+    pub area: f64,
+}
+
+/// What leaves a cell for one of another region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellSeam {
+    /// From which region, and into which.
+    pub between: [u16; 2],
+    /// What leaves.
+    pub flux: f64,
+    /// Length or area of the face; 1 on the line.
+    pub area: f64,
+}
+
+/// The fluxes of a solution, and the volumes of the cells that they are of.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CellFlows<const D: usize> {
+    /// Through the boundary.
+    pub walls: Vec<CellWall<D>>,
+    /// Between regions, each pair of cells from either side.
+    pub seams: Vec<CellSeam>,
+    /// Of the cell of every node.
+    pub volumes: Vec<f64>,
+}
+
+/// Those of all cells.
+pub(super) fn cell_flows<const D: usize>(
+    problem: &Problem<'_, D>,
+    solution: &SystemSolution,
+) -> Result<CellFlows<D>, MethodError> {
+    let balance = CellBalance::new(problem)?;
+    let known = problem.dirichlet();
+    let cells = parallel::try_map_with(
+        problem.cloud.len(),
+        || balance.scratch(),
+        |scratch, i| balance.flows(i, known[i].is_some(), solution, scratch),
+    )?;
+    let mut all = CellFlows::default();
+    for mut cell in cells {
+        all.walls.append(&mut cell.walls);
+        all.seams.append(&mut cell.seams);
+        all.volumes.append(&mut cell.volumes);
+    }
+    Ok(all)
+}
+
+impl<const D: usize> CellBalance<'_, D> {
+    /// The fluxes of one cell.
+    fn flows(
+        &self,
+        i: usize,
+        prescribed: bool,
+        solution: &SystemSolution,
+        scratch: &mut BalanceScratch<'_, D>,
+    ) -> Result<CellFlows<D>, MethodError> {
+        let (problem, u) = (self.problem, &solution.u);
+        let cell = self.cell(i, scratch)?;
+        let mut flows = CellFlows { volumes: vec![cell.volume], ..CellFlows::default() };
+        let rate = solution.rates.as_ref().map_or(0.0, |rates| rates[i]);
+        let mut lacks = cell.volume * (rate - problem.source.map_or(0.0, |f| f[i]));
+        // Pieces of the boundary through which the reaction enters.
+        let mut held: Vec<usize> = Vec::new();
+        let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
+        for face in cell.faces.iter().filter(|f| f.area > negligible) {
+            let mut row = CellRow { entries: Vec::new(), row_sum: 0.0, rhs: 0.0, volume: 0.0 };
+            match face.kind {
+                FaceKind::Neighbor(j) => {
+                    self.inner_face(i, j, face, &mut row);
+                    let across: f64 = row.entries.iter().map(|(j, t)| t * (u[i] - u[*j as usize])).sum();
+                    let flux = across - row.rhs;
+                    lacks += flux;
+                    let between = [i, j as usize].map(|k| problem.labels[k]);
+                    if between[0] != between[1] {
+                        flows.seams.push(CellSeam { between, flux, area: face.area });
+                    }
+                }
+                FaceKind::Boundary(id) => {
+                    let (face_id, at) = (FaceId(id), face.centroid);
+                    let condition = problem.boundary.condition(face_id, &at);
+                    let flux = if prescribed && matches!(condition, Some(Condition::Dirichlet(_))) {
+                        held.push(flows.walls.len());
+                        0.0
+                    } else {
+                        self.boundary_face(i, face_id, face, &mut row)?;
+                        row.rhs - row.row_sum * u[i]
+                    };
+                    lacks -= flux;
+                    let region = problem.labels[i];
+                    flows.walls.push(CellWall { face: face_id, at, region, flux, area: face.area });
+                }
+            }
+        }
+        let area: f64 = held.iter().map(|&k| flows.walls[k].area).sum();
+        held.iter().for_each(|&k| flows.walls[k].flux = lacks * flows.walls[k].area / area);
+        Ok(flows)
+    }
+}
