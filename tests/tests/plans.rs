@@ -84,7 +84,8 @@ fn jumps_are_effects_and_call_for_fits_on_both_sides() {
     let plan = with("");
     assert_eq!(plan.effects, [Effect::FluxJump]);
     assert_eq!((plan.method.name, plan.fallback), (MethodName::Sharp, Some(MethodName::GfdmHybrid)));
-    assert!(plan.runs(Stage::ConstrainedStencils) && !plan.runs(Stage::Cells));
+    // Balances of the nodes beside the interface.
+    assert!(plan.runs(Stage::ConstrainedStencils) && plan.runs(Stage::Cells));
     // An order that these fits do not have, or steps in time: balances.
     for extra in ["[method]\norder = 3\n", "[time]\nend = 1.0\n"] {
         let plan = with(extra);

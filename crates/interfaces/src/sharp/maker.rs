@@ -214,6 +214,13 @@ impl<'a, const D: usize> Maker<'a, D> {
         None
     }
 
+    /// Whether an interface has a sampled point so near.
+    pub(super) fn has_interface_within(&self, x: &[f64; D], radius: f64) -> bool {
+        let mut found = Vec::new();
+        self.points.within(x, radius, &mut found);
+        !found.is_empty()
+    }
+
     /// The node nearest to a point.
     pub(super) fn nearest_one(&self, x: &[f64; D]) -> Option<usize> {
         self.nodes.nearest_one(x).map(|j| j as usize)

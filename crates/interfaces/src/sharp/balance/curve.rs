@@ -95,26 +95,27 @@ impl Curve<'_> {
         }
     }
 
-    /// Cuts the curve where a key changes, by bisection; the spacing at a point tells how closely to look.
+    /// Cuts a part of the curve where a key changes, by bisection; the spacing at a point tells how closely to look.
     pub(super) fn split<K: PartialEq + Copy>(
         &self,
+        [first, last]: [f64; 2],
         spacing: impl Fn(&[f64; 2]) -> f64,
         key: impl Fn(&[f64; 2], &[f64; 2]) -> K,
     ) -> Vec<Piece<K>> {
         let length = self.length();
+        // The ends may be corners, of which nothing is asked.
+        let beside = f64::EPSILON.sqrt() * (last - first);
         let ask = |t: f64| {
-            let (x, normal) = self.at(t);
+            let (x, normal) = self.at(t.clamp(first + beside, last - beside));
             let size = normal[0].hypot(normal[1]);
             key(&x, &normal.map(|n| n / size))
         };
         let mut pieces = Vec::new();
-        // The ends themselves may be corners, of which nothing is asked.
-        let (mut begin, mut t, mut current) = (0.0, 0.0, ask(f64::EPSILON.sqrt()));
-        while t < 1.0 {
+        let (mut begin, mut t, mut current) = (first, first, ask(first));
+        while t < last {
             let step = STEP * spacing(&self.at(t).0) / length;
-            let next = if step.is_finite() && step > 0.0 { (t + step).min(1.0) } else { 1.0 };
-            let asked = if next < 1.0 { next } else { 1.0 - f64::EPSILON.sqrt() };
-            let there = ask(asked);
+            let next = if step.is_finite() && step > 0.0 { (t + step).min(last) } else { last };
+            let there = ask(next);
             for _ in 0..CHANGES {
                 if there == current {
                     break;
@@ -129,7 +130,7 @@ impl Curve<'_> {
             }
             t = next;
         }
-        pieces.push(Piece { between: [begin, 1.0], key: current });
+        pieces.push(Piece { between: [begin, last], key: current });
         pieces.retain(|piece| piece.between[1] > piece.between[0]);
         pieces
     }
@@ -263,7 +264,7 @@ mod tests {
     fn curves_are_cut_where_the_key_changes() {
         let circle = Curve::Arc { center: [0.0; 2], radius: 1.0, from: 0.0, turn: std::f64::consts::TAU };
         let quadrant = |x: &[f64; 2], _: &[f64; 2]| (x[0] > 0.3, x[1] > -0.2);
-        let pieces = circle.split(|_| 0.5, quadrant);
+        let pieces = circle.split([0.0, 1.0], |_| 0.5, quadrant);
         assert_eq!(pieces.len(), 5);
         let cut = circle.at(pieces[0].between[1]).0;
         assert!((cut[0] - 0.3).abs() < 1e-14);

@@ -27,6 +27,12 @@ const POINTS_BEYOND: usize = 2;
 /// Squares of a spacing that a level set is looked for in at most: it is made by an expression that is asked in each.
 const MOST_SEARCHED: f64 = 4e6;
 
+/// Distance of a point of an interface from the nearest one that is sampled on it, in spacings, at most.
+const FARTHEST_POINT: f64 = 1.5;
+
+/// All of a curve.
+const WHOLE: [f64; 2] = [0.0, 1.0];
+
 /// What a face is between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beyond {
@@ -218,6 +224,9 @@ impl<const D: usize> Geometry<'_, '_, D> {
         let planes = box_planes(&min, &max);
         let container = Container { min, max, planes: &planes, cuts: &[] };
         let cell = voronoi_cell(&x, &candidates, f64::INFINITY, &container, scratch).ok()?;
+        let reach = 0.5 * cell.reach + FARTHEST_POINT * spacing;
+        let is_whole =
+            self.problem.domain.outer_box().is_some() && !self.maker.has_interface_within(&wide(&x), reach);
         let mut faces = Vec::new();
         for face in &cell.faces {
             let FaceKind::Neighbor(j) = face.kind else { continue };
@@ -225,11 +234,13 @@ impl<const D: usize> Geometry<'_, '_, D> {
             let from = std::array::from_fn(|k| face.centroid[k] - along[k]);
             let to = std::array::from_fn(|k| face.centroid[k] + along[k]);
             let curve = Curve::between(from, to);
-            let pieces = curve.split(|_| spacing, |x, _| self.label(x) == label && self.inside(x));
-            for Piece { between, key } in pieces {
-                if key {
-                    faces.push(self.face(&curve, between, i as u32, Beyond::Node(j), 1.0));
-                }
+            let inside = |x: &[f64; 2], _: &[f64; 2]| self.label(x) == label && self.inside(x);
+            let pieces = match is_whole {
+                true => vec![Piece { between: WHOLE, key: true }],
+                false => curve.split(WHOLE, |_| spacing, inside),
+            };
+            for Piece { between, .. } in pieces.into_iter().filter(|piece| piece.key) {
+                faces.push(self.face(&curve, between, i as u32, Beyond::Node(j), 1.0));
             }
         }
         Some(faces)
@@ -274,14 +285,17 @@ impl<const D: usize> Geometry<'_, '_, D> {
                 let labels = beside.each_ref().map(|x| self.label(x));
                 // A surface of several primitives is that of the first.
                 let is_known = || levels[..*leaf].iter().any(|level| is_on(level(x), step));
-                if labels[0] == labels[1] || !beside.iter().all(|x| self.inside(x)) || is_known() {
-                    return None;
-                }
-                Some([self.nearest(labels[0], x)?, self.nearest(labels[1], x)?])
+                let is_one = labels[0] != labels[1] && beside.iter().all(|x| self.inside(x)) && !is_known();
+                is_one.then_some(labels)
             };
-            for Piece { between, key } in curve.split(|x| self.spacing(x), key) {
-                if let Some([inner, outer]) = key {
-                    all.push(self.face(curve, between, inner, Beyond::Node(outer), 1.0));
+            let spacing = |x: &[f64; 2]| self.spacing(x);
+            for Piece { between, key } in curve.split(WHOLE, spacing, key) {
+                let Some(labels) = key else { continue };
+                let nearest = |x: &[f64; 2], _: &[f64; 2]| labels.map(|label| self.nearest(label, x));
+                for Piece { between, key } in curve.split(between, spacing, nearest) {
+                    if let [Some(inner), Some(outer)] = key {
+                        all.push(self.face(curve, between, inner, Beyond::Node(outer), 1.0));
+                    }
                 }
             }
         })
@@ -320,7 +334,7 @@ impl<const D: usize> Geometry<'_, '_, D> {
                 let prescribed = matches!(condition, Some(Condition::Dirichlet(_)));
                 Some((self.nearest(self.label(own), x)?, inside[0], prescribed))
             };
-            for Piece { between, key } in curve.split(|x| self.spacing(x), key) {
+            for Piece { between, key } in curve.split(WHOLE, |x| self.spacing(x), key) {
                 if let Some((node, is_below, _)) = key {
                     let sign = if is_below { 1.0 } else { -1.0 };
                     faces.push(self.face(curve, between, node, Beyond::Boundary(*id), sign));

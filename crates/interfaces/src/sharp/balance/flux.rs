@@ -203,7 +203,8 @@ impl<const D: usize> Maker<'_, D> {
         let scale = |part: u32| self.unknowns.scale[part as usize];
         let uniform = stencil.parts.iter().all(|&part| scale(part) == scale(stencil.parts[0]));
         let exchanges = |&j: &u32| self.boundary_rows[j as usize].iter().any(|row| row.exchange != 0.0);
-        if !uniform || stencil.nodes.iter().any(exchanges) {
+        let held = stencil.vertex.is_some_and(|vertex| self.vertices.get(vertex).is_held());
+        if held || !uniform || stencil.nodes.iter().any(exchanges) {
             flux.sum = flux.values.iter().map(|(_, factor)| factor).sum();
         }
     }

@@ -158,7 +158,7 @@ impl MethodParams {
                 particle_difference::steps(survey)
             }
             Self::ImmersedInterface(_) => dcpse::steps(survey),
-            Self::Sharp(_) => sharp::steps(survey),
+            Self::Sharp(params) => sharp::steps(params, survey),
             Self::SurfaceReaction(_) => dcpse::reaction_steps(),
             Self::FreeSpace(_) => free_space::steps(),
         }

@@ -12,13 +12,24 @@ pub(super) fn params(scene: &Scene) -> SharpParams {
     SharpParams {
         order: scene.method.order.unwrap_or(chosen.order),
         unsteady: scene.time.is_some(),
-        conservation: scene.method.options.conservation.map_or(chosen.conservation, |name| match name {
-            ConservationName::None => Conservation::None,
-            ConservationName::Crossing => Conservation::Crossing,
-            ConservationName::All => Conservation::All,
-        }),
+        conservation: conservation(scene),
         ..chosen
     }
+}
+
+/// Cells by region are made in the plane, and balances of what is steady.
+fn conservation(scene: &Scene) -> Conservation {
+    match scene.method.options.conservation {
+        _ if !has_balances(scene) => Conservation::None,
+        None => SharpParams::default().conservation,
+        Some(ConservationName::None) => Conservation::None,
+        Some(ConservationName::Crossing) => Conservation::Crossing,
+        Some(ConservationName::All) => Conservation::All,
+    }
+}
+
+fn has_balances(scene: &Scene) -> bool {
+    scene.dimension == 2 && scene.time.is_none()
 }
 
 /// Microseconds of a stencil beside its factorisation, and those of a thousand multiplications of that: about, on one core.
@@ -66,7 +77,7 @@ fn adapted_microseconds(params: &SharpParams, dimension: usize) -> f64 {
     ADAPTED_BASE + 1e-3 * ADAPTED_RATE * (made + solved)
 }
 
-/// Orders that a dimension does not have.
+/// Orders that a dimension does not have, and balances where there are none.
 pub(super) fn check(scene: &Scene) -> Result<(), Error> {
     let highest = MAX_ORDER[scene.dimension - 1];
     if let Some(order) = scene.method.order.filter(|&order| order > highest) {
@@ -74,16 +85,26 @@ pub(super) fn check(scene: &Scene) -> Result<(), Error> {
         let error = scene.error_at_boundaries(message, format!("take an order up to {highest}"));
         return Err(error.into());
     }
+    let asked = scene.method.options.conservation.filter(|name| *name != ConservationName::None);
+    if asked.is_some() && !has_balances(scene) {
+        let message = "the method \"sharp\" has balances in steady scenes in the plane only".to_owned();
+        let error = scene.error_at_boundaries(message, "remove the key `conservation`".to_owned());
+        return Err(error.into());
+    }
     Ok(())
 }
 
-pub(super) fn steps(survey: &Survey) -> Steps {
+pub(super) fn steps(params: &SharpParams, survey: &Survey) -> Steps {
     Steps {
         stencils: true,
         no_stencils: "",
         selection: false,
         constrained: Some(survey.has_interface()),
         cells: 0.0,
-        may_need_cells: false,
+        may_need_cells: match params.conservation {
+            Conservation::None => false,
+            Conservation::Crossing => survey.has_interface(),
+            Conservation::All => true,
+        },
     }
 }
