@@ -124,14 +124,6 @@ pub(super) const CASES: [Case; 20] = [
         ..HEATED
     },
     Case {
-        case: "touching-corner",
-        title: "Boxes that touch in a corner",
-        about: "u goes like r^0.39 there.",
-        scene: plates::touching_corner,
-        parameters: &[10.0, 0.1],
-        ..HEATED
-    },
-    Case {
         case: "box-on-wall",
         title: "Heated box on a wall",
         about: "The wall is insulated: the interface meets it at a right angle.",
@@ -191,6 +183,15 @@ pub(super) const CASES: [Case; 20] = [
         ..HEATED
     },
     Case {
+        case: "tolerance",
+        title: "Heated chip between two values",
+        about: "u = x on the left and on the right, nothing passes the other sides.",
+        scene: desk::tolerance,
+        conditions: &[],
+        parameters: &[10.0],
+        ..HEATED
+    },
+    Case {
         case: "die",
         title: "Die on a spreader",
         about: "Half of the section of a die of 10 mm on copper that is cooled from below: 60.74 at the top, 2.5 W/mm in and out.",
@@ -217,6 +218,7 @@ pub(super) const CASES: [Case; 20] = [
         title: "Heated cube",
         about: "5.12 is made in a cube of 0.8 and leaves.",
         scene: desk::heated_cube,
+        probes: false,
         parameters: &SOLIDS,
         quick: 0,
         coarsest: 0.24,
@@ -229,6 +231,7 @@ pub(super) const CASES: [Case; 20] = [
         title: "Heated cylinder",
         about: "With ends: curved edges.",
         scene: desk::heated_cylinder,
+        probes: false,
         parameters: &SOLIDS,
         quick: 0,
         coarsest: 0.24,
