@@ -72,7 +72,7 @@ const HEATED: Case = Case {
     bounds: &CHIP,
 };
 
-pub(super) const CASES: [Case; 20] = [
+pub(super) const CASES: [Case; 21] = [
     Case {
         case: "heated-box",
         title: "Heated square chip",
@@ -121,6 +121,14 @@ pub(super) const CASES: [Case; 20] = [
         title: "Boxes that share half an edge",
         about: "One is heated, the other conducts three times as well: two points where three materials meet.",
         scene: plates::touching_edge,
+        ..HEATED
+    },
+    Case {
+        case: "touching-corner",
+        title: "Boxes that touch in a corner",
+        about: "u goes like r^0.39 there.",
+        scene: plates::touching_corner,
+        parameters: &[0.1],
         ..HEATED
     },
     Case {
