@@ -135,7 +135,7 @@ mod tests {
                 .filter(|f| f.case == case && f.quantity == Quantity::Flux)
                 .map(|f| f.value / (SOURCE * area) + 1.0)
                 .collect();
-            assert!(found.len() > 1 && found.iter().all(|e| e.abs() < 1e-8), "{case}: {found:?}");
+            assert!(!found.is_empty() && found.iter().all(|e| e.abs() < 1e-8), "{case}: {found:?}");
         }
     }
 }

@@ -12,17 +12,17 @@ use proptest::sample::select;
 
 /// A problem on the unit box.
 #[derive(Debug, Clone)]
-pub struct Natural {
+pub(crate) struct Natural {
     /// 1, 2 or 3.
-    pub dimension: usize,
+    pub(crate) dimension: usize,
     /// The shape, the decimal exponent of the diffusivity and the source of each part; where two overlap the first counts.
-    pub parts: Vec<(String, i32, f64)>,
+    pub(crate) parts: Vec<(String, i32, f64)>,
     /// Source of the rest, whose diffusivity is 1.
-    pub source: f64,
+    pub(crate) source: f64,
     /// What holds on each face; u is fixed by the first one.
-    pub conditions: Vec<String>,
+    pub(crate) conditions: Vec<String>,
     /// Seed of the cloud.
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 const FACES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
@@ -43,7 +43,7 @@ const PROBES: [[f64; 3]; 7] = [
 
 impl Natural {
     /// The scene at so many times its spacing.
-    pub fn text(&self, coarser: f64) -> String {
+    pub(crate) fn text(&self, coarser: f64) -> String {
         let d = self.dimension;
         let row = |x: &str| vec![x; d].join(", ");
         let mut text = format!(
@@ -147,21 +147,21 @@ fn of_dimension(dimension: usize) -> impl Strategy<Value = Natural> {
 }
 
 /// Problems on the line, in the plane and in space; most of them in the plane.
-pub fn natural() -> impl Strategy<Value = Natural> {
+pub(crate) fn natural() -> impl Strategy<Value = Natural> {
     prop_oneof![2 => of_dimension(1), 7 => of_dimension(2), 1 => of_dimension(3)]
 }
 
 /// How far an answer is off, and what it said.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Verdict {
+pub(crate) struct Verdict {
     /// Root mean square of the difference to the finer cloud at the probes, over that of its u.
-    pub difference: f64,
+    pub(crate) difference: f64,
     /// The estimate of the answer and that of the finer cloud, together.
-    pub told: f64,
+    pub(crate) told: f64,
     /// What is left over of the balance, relative, where the report has one.
-    pub left_over: Option<f64>,
+    pub(crate) left_over: Option<f64>,
     /// The estimate of the answer.
-    pub estimate: f64,
+    pub(crate) estimate: f64,
 }
 
 /// How many times the estimates a difference may be: they are good to a factor of three either way, and a coarse cloud is
@@ -173,7 +173,7 @@ const ROUND_OFF: f64 = 1e-8;
 
 impl Verdict {
     /// How many times more than allowed the answer is off; up to 1 is right.
-    pub fn excess(&self) -> f64 {
+    pub(crate) fn excess(&self) -> f64 {
         let difference = self.difference / (FACTOR * self.told + ROUND_OFF);
         let balance = self.left_over.map_or(0.0, |left| left / (FACTOR * self.estimate + ROUND_OFF));
         // Not a number is as wrong as can be.
@@ -194,7 +194,7 @@ fn left_over(report: &Report) -> Option<f64> {
 
 /// Judges the plan's answer by conservative balances on a cloud of half the spacing. `None` where the answer was refused, or
 /// claims nothing, or where there is nothing to compare with.
-pub fn judge(problem: &Natural) -> Option<Verdict> {
+pub(crate) fn judge(problem: &Natural) -> Option<Verdict> {
     let answer = solved(&problem.text(1.0), MethodName::Auto).ok()?.report;
     let estimate = answer.estimate.l2?;
     let finer = solved(&problem.text(0.5), MethodName::GfdmConservative).ok()?;

@@ -72,7 +72,7 @@ const HEATED: Case = Case {
     bounds: &CHIP,
 };
 
-pub(super) const CASES: [Case; 20] = [
+pub(super) const CASES: [Case; 21] = [
     Case {
         case: "heated-box",
         title: "Heated square chip",
@@ -128,7 +128,7 @@ pub(super) const CASES: [Case; 20] = [
         title: "Boxes that touch in a corner",
         about: "u goes like r^0.39 there.",
         scene: plates::touching_corner,
-        parameters: &[10.0, 0.1],
+        parameters: &[0.1],
         ..HEATED
     },
     Case {
@@ -191,6 +191,15 @@ pub(super) const CASES: [Case; 20] = [
         ..HEATED
     },
     Case {
+        case: "tolerance",
+        title: "Heated chip between two values",
+        about: "u = x on the left and on the right, nothing passes the other sides.",
+        scene: desk::tolerance,
+        conditions: &[],
+        parameters: &[10.0],
+        ..HEATED
+    },
+    Case {
         case: "die",
         title: "Die on a spreader",
         about: "Half of the section of a die of 10 mm on copper that is cooled from below: 60.74 at the top, 2.5 W/mm in and out.",
@@ -217,6 +226,7 @@ pub(super) const CASES: [Case; 20] = [
         title: "Heated cube",
         about: "5.12 is made in a cube of 0.8 and leaves.",
         scene: desk::heated_cube,
+        probes: false,
         parameters: &SOLIDS,
         quick: 0,
         coarsest: 0.24,
@@ -229,6 +239,7 @@ pub(super) const CASES: [Case; 20] = [
         title: "Heated cylinder",
         about: "With ends: curved edges.",
         scene: desk::heated_cylinder,
+        probes: false,
         parameters: &SOLIDS,
         quick: 0,
         coarsest: 0.24,
