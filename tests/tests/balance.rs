@@ -158,7 +158,10 @@ fn conservative_methods_leave_nothing_over() {
     for (text, _) in natural().into_iter().filter(|(text, _)| !text.contains("1e-10")) {
         let report = solved(&text, MethodName::GfdmConservative).expect("it is solved");
         let found = balance(&report);
-        assert!(found.relative < 1e-8 && report.estimate.raised_by.is_none(), "{report:?}");
+        assert!(
+            found.relative < 1e-8 && report.estimate.raised_by.as_deref() != Some("balance"),
+            "{report:?}"
+        );
         assert!(found.regions.values().all(|region| region.relative < 1e-8), "{found:?}");
     }
 }

@@ -17,6 +17,7 @@ fn report(text: &str) -> Report {
 fn chip(eta: f64, spacing: f64, order: usize) -> String {
     format!(
         r#"
+title = "Corner"
 dimension = 2
 [domain]
 box = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}
@@ -59,6 +60,7 @@ fn l_shape(order: usize) -> String {
     let u = format!("if(x^2+y^2<1e-24,0,(x^2+y^2)^(1/3)*sin(2/3*{angle}))");
     format!(
         r#"
+title = "Corner"
 dimension = 2
 [domain]
 polygon = [[0,0],[1,0],[1,1],[-1,1],[-1,-1],[0,-1]]
@@ -104,6 +106,7 @@ fn kellogg(spacing: f64) -> String {
         format!("(x^2+y^2)^0.05*if(x>=0, if(y>=0, {}, {}), if(y>=0, {}, {}))", mu[0], mu[3], mu[1], mu[2]);
     format!(
         r#"
+title = "Corner"
 dimension = 2
 [domain]
 box = {{ min = [-1,-1], max = [1,1] }}
@@ -138,6 +141,7 @@ fn four_quadrants_meet_in_a_point() {
 fn two_prescribed_values_that_meet_are_joined_by_the_angle() {
     // ISO 10211 case 1: u = sum of 80/((2k+1) pi) sin(...) sinh(...)/sinh(...) over odd modes; 9.6582 at a quarter.
     let text = r#"
+title = "Corner"
 dimension = 2
 [domain]
 box = { min = [0.0, 0.0], max = [4.0, 8.0] }
@@ -205,6 +209,7 @@ fn corners_that_nothing_serves_are_named_and_raise_the_estimate() {
     assert!(found.estimate.l2.is_some_and(|estimate| estimate >= 0.999 * least));
     // Edges in space.
     let cube = r#"
+title = "Corner"
 dimension = 3
 [domain]
 box = { min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }

@@ -24,6 +24,7 @@ fn a_plain_poisson_scene_has_nothing_but_stencils() {
             Stage::LaplacianStencils,
             Stage::Assembly,
             Stage::Solve,
+            Stage::Balance,
             Stage::Estimate
         ]
     );
@@ -36,7 +37,9 @@ fn every_effect_adds_its_own_stages_and_no_others() {
         let plan = plan(&small);
         plan.stages.into_iter().filter(|s| !base.stages.contains(s)).collect::<Vec<_>>()
     };
-    assert_eq!(added(Small { source: Some("1"), ..Small::default() }), [Stage::Source]);
+    // Where a source meets a right angle with u = 0 the solution has a logarithm.
+    let corners = [Stage::Source, Stage::CornerFunctions];
+    assert_eq!(added(Small { source: Some("1"), ..Small::default() }), corners);
     assert_eq!(added(Small { source: Some("0"), ..Small::default() }), []);
     assert_eq!(
         added(Small { outside: "1 + x", ..Small::default() }),
@@ -138,8 +141,8 @@ fn the_prediction_of_the_unknowns_is_close() {
     }
 }
 
-/// Functions that solve the equation of a diffusivity that varies take 4.5 times the stencils in space, and fluxes half as much
-/// again.
+/// Functions that solve the equation of a diffusivity that varies take 4.5 times the stencils in space; fluxes are those of the balance,
+/// which every scene has.
 #[test]
 fn what_varies_and_fluxes_are_in_the_prediction_of_the_time() {
     let predicted = |eta: &str, fluxes: bool| {
@@ -153,7 +156,7 @@ fn what_varies_and_fluxes_are_in_the_prediction_of_the_time() {
     };
     let constant = predicted("1", false);
     let ratios = [predicted("1 + x", false), predicted("1", true)].map(|seconds| seconds / constant);
-    assert!((2.0..6.0).contains(&ratios[0]) && (1.1..2.0).contains(&ratios[1]), "{ratios:?}");
+    assert!((2.0..6.0).contains(&ratios[0]) && ratios[1] == 1.0, "{ratios:?}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Interfaces and boundaries in the plane as smooth pieces of curves, and the vertices where these meet.
 //!
 //! Sides of boxes, edges of polygons, lines and circles are cut where they cross; what remains is every piece with different
-//! things on its two sides. Level sets and other dimensions are not looked at.
+//! things on its two sides. Level sets have no pieces, but vertices know how near they are.
 
 mod curve;
 mod vertices;
@@ -19,6 +19,9 @@ const SAME: f64 = 1e-9;
 
 /// How far beside the middle of a piece its two sides are told, over its length.
 const BESIDE: f64 = 1e-4;
+
+/// Size of the pieces in which level sets are looked at, over the diameter of the domain.
+const SAMPLED: f64 = 5e-3;
 
 /// Curves beyond which vertices are not looked for: each of so many is far smaller than any spacing, and what they outline
 /// is a curve.
@@ -55,6 +58,9 @@ impl PlanarPiece {
 #[derive(Clone, Debug, Default)]
 pub struct PlanarPieces {
     pieces: Vec<PlanarPiece>,
+    /// Points on the surfaces of shapes that have no such pieces, and how far apart they are: nothing is clear beyond them.
+    others: Vec<[f64; 2]>,
+    between_others: f64,
     /// Points nearer than this to each other are one.
     tolerance: f64,
 }
@@ -66,8 +72,10 @@ impl PlanarPieces {
         let tolerance = SAME * domain.bounds().diameter();
         let curves = if D == 2 { curves(domain, regions) } else { Vec::new() };
         if curves.len() > MOST_CURVES {
-            return Self { pieces: Vec::new(), tolerance };
+            return Self { tolerance, ..Self::default() };
         }
+        let between_others = SAMPLED * domain.bounds().diameter();
+        let others = if D == 2 { others(domain, regions, between_others) } else { Vec::new() };
         let label = |x: [f64; 2]| {
             let x: [f64; D] = std::array::from_fn(|k| x[k]);
             domain.contains(&x, 0.0).then(|| regions.label(&x, 0.0))
@@ -97,7 +105,7 @@ impl PlanarPieces {
                 kept.push(piece);
             }
         }
-        Self { pieces: kept, tolerance }
+        Self { pieces: kept, others, between_others, tolerance }
     }
 
     /// The pieces.
@@ -149,6 +157,14 @@ fn curves<const D: usize>(domain: &Domain<D>, regions: &RegionMap<D>) -> Vec<(Cu
         found.extend((0..).zip(sides).map(side));
     }
     found
+}
+
+/// Points on the surfaces of level sets.
+fn others<const D: usize>(domain: &Domain<D>, regions: &RegionMap<D>, size: f64) -> Vec<[f64; 2]> {
+    let faces = domain.curved_faces().into_iter().map(|(_, shape, _)| shape);
+    let shapes = faces.chain((0..regions.len() as u16).filter_map(|label| regions.shape(label)));
+    let leaves = shapes.flat_map(Shape::leaves).filter(|(leaf, _)| matches!(leaf, Shape::LevelSet(_)));
+    leaves.flat_map(|(leaf, _)| leaf.elements(&domain.bounds(), size)).map(|e| [e.at[0], e.at[1]]).collect()
 }
 
 /// Every curve in pieces between the places where others cross or touch it.

@@ -85,6 +85,10 @@ impl PlanarPieces {
         {
             vertices.extend(self.on_a_piece(at));
         }
+        for vertex in &mut vertices {
+            let nearest = self.others.iter().map(|x| distance(x, &vertex.at)).fold(f64::INFINITY, f64::min);
+            vertex.clear = vertex.clear.min((nearest - self.between_others).max(self.tolerance));
+        }
         vertices
     }
 

@@ -32,6 +32,11 @@ const ON_RAY: f64 = 1e-6;
 /// Errors of the polynomials that stand for the data may be so many times as large as between the points where they are known.
 const DOUBTFUL: f64 = 10.0;
 
+/// How near to a vertex a source is told there, over the length of its shortest ray, and the part of it farther away below which it
+/// vanishes.
+const AT_VERTEX: f64 = 1e-9;
+const VANISHING: f64 = 1e-6;
+
 /// How far along the rays data are looked at to tell what they do at the vertex, over their length.
 const NEAR: f64 = 0.25;
 
@@ -121,6 +126,8 @@ pub(crate) struct Scales {
     pub(crate) radius: f64,
     /// Polynomials in the coordinates over R that have the right Laplacian in every sector.
     pub(crate) sources: Vec<Vec<Monomial>>,
+    /// How far these are off.
+    pub(crate) doubt: f64,
 }
 
 impl Scales {
@@ -130,11 +137,13 @@ impl Scales {
         let radius = NEAR * local.clear;
         let source = |k: usize| {
             let material = &problem.materials[local.labels[k] as usize];
-            let f = material
-                .source
-                .as_ref()
-                .map_or(0.0, |f| f.at(&in_space(local.inside(k, BESIDE * local.clear))));
-            let f = if f.is_finite() { f } else { 0.0 };
+            let at = |distance: f64| {
+                let f = material.source.as_ref().map_or(0.0, |f| f.at(&in_space(local.inside(k, distance))));
+                if f.is_finite() { f } else { 0.0 }
+            };
+            // A source that vanishes at the vertex leaves rounding there.
+            let here = at(AT_VERTEX * local.clear);
+            let f = if here.abs() > VANISHING * at(radius).abs() { here } else { 0.0 };
             square(-radius * radius * f / (4.0 * local.wedge.sectors[k].eta))
         };
         Self {
@@ -142,6 +151,7 @@ impl Scales {
             offset: vec![0.0; sectors],
             radius,
             sources: (0..sectors).map(source).collect(),
+            doubt: 0.0,
         }
     }
 }
@@ -314,6 +324,7 @@ impl Local {
         unit.iter_mut().for_each(|data| *data = empty(&wedge));
         add_sources(&wedge, self.start, &units, &mut unit);
         let unit = wedge.forced(2.0, &unit[2]).ok_or(Obstacle::Data)?;
+        let doubt = doubt.max(scales.doubt);
         Ok(LocalSolution { functions, forced, unit, doubt, data_degree })
     }
 
@@ -433,7 +444,7 @@ pub(crate) struct KnownWedges {
 }
 
 impl KnownWedges {
-    /// Of none yet, with exponents up to a degree.
+    /// Of none yet, with exponents up to a degree, and as many functions as there are harmonic polynomials of it.
     pub(crate) fn new(degree: f64) -> Self {
         Self { degree, known: Vec::new() }
     }
@@ -450,7 +461,7 @@ impl KnownWedges {
         if let Some((_, exponents)) = self.known.iter().find(alike) {
             return exponents.clone();
         }
-        let exponents = wedge.exponents(self.degree);
+        let exponents = wedge.exponents(self.degree.max(wedge.exponent_of(2.0 * self.degree.round() + 1.0)));
         self.known.push((wedge.clone(), exponents.clone()));
         exponents
     }

@@ -174,6 +174,14 @@ impl Wedge {
         self.ends.is_some_and(|ends| ends.contains(&End::Dirichlet))
     }
 
+    /// About the exponent up to which there are so many functions.
+    pub(crate) fn exponent_of(&self, functions: f64) -> f64 {
+        let angle: f64 = self.sectors.iter().map(|s| s.opening).sum();
+        // All round every exponent is about double.
+        let each = if self.ends.is_some() { PI } else { 0.5 * angle };
+        functions * each / angle
+    }
+
     /// The exponents from just above 0 to `most`, with how many functions each has.
     pub(crate) fn exponents(&self, most: f64) -> Vec<(f64, usize)> {
         let rays = CountingRays::new(self, most);

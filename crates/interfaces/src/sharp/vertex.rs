@@ -42,6 +42,9 @@ const SHARES_OF_ZONE: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 const DATA_TOLERANCE: f64 = 1e-10;
 const WORTH_LESS: f64 = 0.1;
 
+/// Where the polynomial of a source is compared with it: at its samples, turned by a right angle and nearer by this factor.
+const BETWEEN: f64 = 0.95;
+
 /// Distance from a vertex, over the clear one, below which a node is there.
 const AT_VERTEX: f64 = 1e-9;
 
@@ -171,10 +174,10 @@ impl SourcePolynomials {
         source: Option<&Field<D>>,
         (at, radius): ([f64; 2], f64),
         response: f64,
-    ) -> Result<Vec<Monomial>, Obstacle> {
-        let Some(field) = source else { return Ok(Vec::new()) };
+    ) -> Result<(Vec<Monomial>, f64), Obstacle> {
+        let Some(field) = source else { return Ok((Vec::new(), 0.0)) };
         if let Some(f) = field.as_constant() {
-            return Ok(square(0.25 * response * f));
+            return Ok((square(0.25 * response * f), 0.0));
         }
         let made = self.made.get_or_insert_with(|| Particular::new(self.degree));
         let place = |z: &[f64; 2]| in_space([at[0] + radius * z[0], at[1] + radius * z[1]]);
@@ -188,7 +191,18 @@ impl SourcePolynomials {
         let mut factors = Vec::new();
         made.solve(&values, &mut factors);
         let Basis::Complete { exponents, .. } = &made.basis else { return Err(Obstacle::Data) };
-        Ok(exponents.iter().copied().zip(factors).collect())
+        // The Laplacian between the samples.
+        let (mut jet, mut error) = (Jet::default(), 0.0_f64);
+        for z in made.samples.iter().map(|[x, y]| [BETWEEN * y, -BETWEEN * x]) {
+            made.basis.evaluate(&z, &mut jet);
+            let laplacian: f64 = factors.iter().zip(&jet.laplacians).map(|(c, l)| c * l).sum();
+            let f = response * field.at(&place(&z));
+            error = error.max((laplacian - f).abs());
+        }
+        if !error.is_finite() {
+            return Err(Obstacle::Data);
+        }
+        Ok((exponents.iter().copied().zip(factors).collect(), error))
     }
 }
 
@@ -256,7 +270,9 @@ impl Vertex {
                     source.of(field, (local.at, radius), response)
                 })
                 .collect::<Result<Vec<_>, _>>()?;
-            let scales = Scales { scale: scale.clone(), offset: offset.clone(), radius, sources };
+            let (sources, errors): (Vec<_>, Vec<f64>) = sources.into_iter().unzip();
+            let doubt = errors.into_iter().fold(0.0, f64::max);
+            let scales = Scales { scale: scale.clone(), offset: offset.clone(), radius, sources, doubt };
             let solution = local.solve(&CornerData::from(problem), &scales, params.degree())?;
             let better = best.as_ref().is_none_or(|(.., known)| solution.doubt < WORTH_LESS * known.doubt);
             if better {

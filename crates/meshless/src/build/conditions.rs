@@ -7,9 +7,11 @@ use super::fields::{field, not_finite};
 use crate::Error;
 use crate::scene::{BoundarySpec, ConditionSpec, ExprField, Scene};
 
-/// How far from an edge between pieces of the boundary the condition on either is told, in spacings: farther than what a `where` such as
-/// `y < 1e-6` allows for rounding.
-const BESIDE: f64 = 0.02;
+/// How far from an edge between pieces of the boundary the data on either are told, in spacings.
+const BESIDE: f64 = 1e-5;
+
+/// The same for which condition holds: farther than what a `where` such as `y < 1e-6` allows for rounding.
+const ENTRY_BESIDE: f64 = 0.02;
 
 /// How far on both sides of a piece it is looked whether it is one, over the least of what the steps along it come away from the others.
 const ACROSS: f64 = 0.1;
@@ -94,7 +96,9 @@ impl<const D: usize> Boundary<D> {
         for node in cloud.boundary() {
             for touch in &node.touches {
                 faces[touch.face.0 as usize] = true;
-                if let Some(index) = self.entry(touch.face, &beside_edges(domain, cloud, node, touch)) {
+                if let Some(index) =
+                    self.entry(touch.face, &beside_edges(domain, cloud, node, touch, ENTRY_BESIDE))
+                {
                     met[index] = true;
                 }
             }
@@ -133,10 +137,12 @@ impl<const D: usize> Boundary<D> {
             let x = &cloud.points()[node.node as usize];
             let mut conditions = Vec::with_capacity(node.touches.len());
             for touch in &node.touches {
-                let place = &beside_edges(domain, cloud, node, touch);
-                self.check_places(scene, touch.face, place)?;
+                let told = &beside_edges(domain, cloud, node, touch, ENTRY_BESIDE);
+                let place = &beside_edges(domain, cloud, node, touch, BESIDE);
+                self.check_places(scene, touch.face, told)?;
                 let index = self
-                    .entry(touch.face, place)
+                    .entry(touch.face, told)
+                    .or_else(|| self.entry(touch.face, place))
                     .ok_or_else(|| missing_condition(scene, cloud, node.node as usize, x))?;
                 let condition = self.entries[index].kind.beside(x, place);
                 check(scene, &scene.boundaries[index], &condition, x)?;
@@ -156,10 +162,11 @@ fn beside_edges<const D: usize>(
     cloud: &Cloud<D>,
     node: &BoundaryNode<D>,
     touch: &Touch<D>,
+    distance: f64,
 ) -> [f64; D] {
     let i = node.node as usize;
     let at = cloud.points()[i];
-    let reach = BESIDE * cloud.spacing()[i];
+    let reach = distance * cloud.spacing()[i];
     let others = node.touches.iter().filter(|other| other.normal != touch.normal);
     let steps: Vec<[f64; D]> = others
         .map(|other| {
@@ -185,7 +192,10 @@ fn beside_edges<const D: usize>(
         inside(-depth) && !inside(depth)
     };
     let most = 1 << steps.len().min(MOST_PIECES);
-    (0..most).map(place).find(is_on_piece).unwrap_or_else(|| place(0))
+    let x = (0..most).map(place).find(is_on_piece).unwrap_or_else(|| place(0));
+    // Curved pieces do not go on along their tangents.
+    let foot = domain.project_to_face(touch.face, &x).ok().filter(|foot| foot.distance.abs() <= reach);
+    foot.map_or(x, |foot| foot.point)
 }
 
 impl<const D: usize> BoundaryData<D> for Boundary<D> {

@@ -30,7 +30,7 @@ const LEVELS: usize = 8;
 const OTHER_DEGREE: usize = 3;
 
 /// Part of a flux by which the quadrature may be off: fluxes at interfaces are taken a little beside them.
-const QUADRATURE: f64 = 1e-8;
+const QUADRATURE: [f64; 3] = [1e-8, 1e-8, 1e-4];
 
 /// Round-off of a slope, over the size of u and the distance of nodes.
 const ROUND_OFF: f64 = 1e-12;
@@ -273,7 +273,7 @@ impl<const D: usize> Ledger<D> {
             let absolute = flow.walls + flow.seams + flow.jumps + source.value - held.value;
             let size = flow.size + made + kept;
             let share = |value: f64| if size > 0.0 { value / size } else { 0.0 };
-            let doubt = source.doubt + held.doubt + flow.round_off + QUADRATURE * flow.size;
+            let doubt = source.doubt + held.doubt + flow.round_off + QUADRATURE[D - 1] * flow.size;
             LeftOver { absolute, relative: share(absolute.abs()), doubt: share(doubt) }
         };
         let (sources, held) = self.contents(flows);
