@@ -210,7 +210,8 @@ impl<const D: usize> Problem<'_, D> {
     }
 }
 
-fn between<const D: usize>(
+/// The jump between two regions in a list, with the sign that belongs to going from one to the other.
+pub(crate) fn between<const D: usize>(
     jumps: &[InterfaceJump<D>],
     from: u16,
     to: u16,

@@ -7,7 +7,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::CornerData;
 use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
-use crate::{Condition, InterfaceJump};
+use crate::Condition;
+use crate::problem::between;
 
 /// Where diffusivities and the kinds of conditions beside a vertex are read, over the length of its shortest ray.
 const BESIDE: f64 = 1e-3;
@@ -349,7 +350,7 @@ impl Local {
             let next = (ray + 1) % sectors;
             all[0].values[ray] = scales.offset[ray] - scales.offset[next];
             let (before, after) = (self.labels[ray], self.labels[next]);
-            let Some((jump, sign)) = jump_between(problem.jumps, before, after) else { continue };
+            let Some((jump, sign)) = between(problem.jumps, before, after) else { continue };
             let at = |t: f64| in_space(self.on_ray(ray + 1, t));
             if let Some(field) = &jump.value {
                 let values = polynomial(&|t| Some(sign * field.at(&at(t))))?;
@@ -422,19 +423,6 @@ impl LocalSolution {
         let [plain, turning] = [0, 1].map(|k| first.plain.iter().fold(0.0_f64, |m, f| m.max(f[k].abs())));
         turning > (NEGLIGIBLE * plain.max(turning)).max(self.rounding(0.0))
     }
-}
-
-/// The jump between two regions, with the sign that belongs to going from one to the other.
-fn jump_between<const D: usize>(
-    jumps: &[InterfaceJump<D>],
-    from: u16,
-    to: u16,
-) -> Option<(&InterfaceJump<D>, f64)> {
-    jumps.iter().find_map(|jump| match jump.between {
-        [a, b] if (a, b) == (from, to) => Some((jump, 1.0)),
-        [a, b] if (b, a) == (from, to) => Some((jump, -1.0)),
-        _ => None,
-    })
 }
 
 /// Wedges whose exponents were counted before: many corners of a scene are alike.
