@@ -32,6 +32,10 @@ const BEYOND: f64 = 2.0;
 /// Nodes within the clear distance for each function.
 const NODES_PER_FUNCTION: f64 = 1.5;
 
+/// Nodes within the clear distance that have polynomials and no prescribed value, for each function: without them nothing holds the
+/// functions, and the matrix is singular.
+const HOLDING_NODES_PER_FUNCTION: f64 = 1.0;
+
 /// The polynomial that stands for a source round a vertex has this many degrees more than those of a fit, up to the highest.
 const SOURCE_DEGREES_BEYOND: usize = 4;
 const HIGHEST_SOURCE_DEGREE: usize = 14;
@@ -99,6 +103,7 @@ impl Vertices {
             made: None,
         };
         let data = CornerData::from(problem);
+        let known = problem.dirichlet();
         for local in local_problems(&data, degree as f64 + AT_VERTEX) {
             let (at, clear, exponent) = (local.at.to_vec(), local.clear, local.broken_exponent());
             let report = |exponent: f64, obstacle: Option<Obstacle>| Corner {
@@ -109,7 +114,7 @@ impl Vertices {
             };
             let spacing = nodes.nearest_one(&in_space(local.at)).map(|j| problem.cloud.spacing()[j as usize]);
             let wanted = ZONE * degree as f64 * spacing.unwrap_or(0.0);
-            match Vertex::new(problem, params, unknowns, nodes, local.clone(), &mut source) {
+            match Vertex::new(problem, params, unknowns, nodes, local.clone(), &known, &mut source) {
                 Ok(vertex) => {
                     if let Some(power) =
                         vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64)
@@ -218,6 +223,7 @@ impl Vertex {
         unknowns: &Unknowns,
         nodes: &CellList<'_, D>,
         local: Local,
+        known: &[Option<f64>],
         source: &mut SourcePolynomials,
     ) -> Result<Self, Obstacle> {
         if params.unsteady || params.form != Form::Trefftz {
@@ -286,6 +292,24 @@ impl Vertex {
         let response = |k: usize| -scales.radius * scales.radius / (local.wedge.sectors[k].eta * scale[k]);
         let units = (0..parts.len()).map(|k| square(0.25 * response(k))).collect();
         let (held, ambiguous) = (local.wedge.is_held(), solution.value_depends_on_direction());
+        // Nodes that take the functions say of each other that these solve their rows, whatever the factors: others have to hold them.
+        let distance = |x: &[f64; D]| (x[0] - local.at[0]).hypot(x[1] - local.at[1]);
+        let mut near = Vec::new();
+        let mut holds = |&&j: &&u32| {
+            let x = &problem.cloud.points()[j as usize];
+            let away = distance(x);
+            known[j as usize].is_none() && away >= zone && {
+                let seen = nodes.nearest(x, params.stencil_nodes(D), &mut near).last();
+                seen.is_some_and(|last| {
+                    let last = &problem.cloud.points()[last as usize];
+                    (last[0] - x[0]).hypot(last[1] - x[1]) < away
+                })
+            }
+        };
+        let enough = (HOLDING_NODES_PER_FUNCTION * functions as f64).ceil() as usize;
+        if found.iter().filter(&mut holds).take(enough).count() < enough {
+            return Err(Obstacle::Spacing);
+        }
         Ok(Self { local, solution, scales, units, parts, zone, held, ambiguous })
     }
 
