@@ -3,14 +3,16 @@
 use meshless::plan::{Effect, Plan, Stage};
 use meshless::report::Report;
 use meshless::scene::Scene;
-use meshless_tests::solve::solve_scene;
+use meshless::{Silent, execute};
 
 fn scene(text: &str) -> Scene {
     Scene::parse(text, "corners.toml").expect("the scene is right")
 }
 
 fn report(text: &str) -> Report {
-    solve_scene(&scene(text)).expect("the scene can be solved").report
+    let scene = scene(text);
+    let plan = Plan::new(&scene).expect("a plan");
+    execute(&scene, &plan, &mut Silent).expect("the scene can be solved").report
 }
 
 /// A chip in a plate: 3.6 is made in it.

@@ -54,8 +54,14 @@ fn every_effect_adds_its_own_stages_and_no_others() {
         added(Small { extra: "[output]\nvtu = true\n\n", ..Small::default() }),
         [Stage::Gradient, Stage::Diagnosis, Stage::Vtu]
     );
-    let fits =
-        [Stage::Regions, Stage::Diffusivity, Stage::DiffusionStencils, Stage::ConstrainedStencils].to_vec();
+    let fits = [
+        Stage::Regions,
+        Stage::Diffusivity,
+        Stage::DiffusionStencils,
+        Stage::ConstrainedStencils,
+        Stage::Cells,
+    ]
+    .to_vec();
     assert_eq!(added(Small { inside: Some("5"), ..Small::default() }), fits);
     let stiff = [&fits[..], &[Stage::FloatingConstants]].concat();
     assert_eq!(added(Small { inside: Some("1e6"), ..Small::default() }), stiff);

@@ -274,7 +274,9 @@ impl<const D: usize> Ledger<D> {
             let size = flow.size + made + kept;
             let share = |value: f64| if size > 0.0 { value / size } else { 0.0 };
             let doubt = source.doubt + held.doubt + flow.round_off + QUADRATURE[D - 1] * flow.size;
-            LeftOver { absolute, relative: share(absolute.abs()), doubt: share(doubt) }
+            // Where nothing flows, round-off is no share of anything.
+            let relative = if absolute.abs() > flow.round_off { share(absolute.abs()) } else { 0.0 };
+            LeftOver { absolute, relative, doubt: share(doubt) }
         };
         let (sources, held) = self.contents(flows);
         let regions = flows
