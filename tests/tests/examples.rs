@@ -39,7 +39,7 @@ const EXAMPLES: [Example; 25] = [
     example("l_shape", "0.016 + 0.2*sqrt(x^2 + y^2)", 2.5e-3),
     example("membrane", "0.08", 2.2e-4),
     example("pipe", "0.004", 8e-6),
-    Example { name: "porous", spacing: "0.04", l2: None },
+    Example { name: "porous", spacing: "0.03", l2: None },
     example("quarter_tube", "0.12", 8e-3),
     Example { name: "quench", spacing: "1.5", l2: None },
     example("rings", "0.08", 1e-11),

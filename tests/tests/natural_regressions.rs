@@ -389,6 +389,6 @@ dirichlet = "x"
         assert!(report.errors.expect("exact").linf < 1e-10);
     }
     let vanishing = scene(&text("0.1*sqrt((x - 0.3)^2 + y^2)"));
-    let message = Plan::new(&vanishing).and_then(|_| solve_scene(&vanishing)).err().expect("refused");
+    let message = Plan::new(&vanishing).and_then(|_| solve_scene(&vanishing)).expect_err("refused");
     assert!(message.to_string().contains("falls to zero at about [0.3000"), "{message}");
 }

@@ -285,7 +285,6 @@ pub(super) const CASES: [Case; 21] = [
         coarsest: 0.08,
         space: true,
         bounds: &[plan(1, 1e-3, 1e-3)],
-        ..HEATED
     },
 ];
 

@@ -16,7 +16,7 @@ const HALF_WIDTH: f64 = 2.5;
 
 /// How far beside an interface it is asked what is there, in spacings: beyond round-off of coordinates, and far less than a cell has
 /// to be closed by.
-const BESIDE: f64 = 1e-8;
+const BESIDE: f64 = 1e-12;
 
 /// What may be missing of the surface of a cell, over its size.
 const CLOSED: f64 = 1e-5;
