@@ -86,8 +86,8 @@ pub(super) struct Row {
     /// Entries of the mass, that of the node itself first; empty in steady scenes.
     pub(super) mass: Vec<f64>,
     pub(super) crosses: bool,
-    /// Its fit has the functions of a vertex.
-    pub(super) at_vertex: bool,
+    /// The vertex whose functions its fit has.
+    pub(super) vertex: Option<usize>,
     /// Whether it is the balance over the node's cell.
     pub(super) balanced: bool,
     pub(super) enlarged: bool,
@@ -288,7 +288,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             rhs,
             mass: mass.iter().map(|m| factor * m).collect(),
             crosses: stencil.parts.len() > 1,
-            at_vertex: stencil.vertex.is_some(),
+            vertex: stencil.vertex,
             balanced: false,
             enlarged,
             gradient: self.keeps_gradients().then(|| self.gradient_row(scratch)),

@@ -29,6 +29,9 @@ const SEVERE: f64 = 2.0;
 /// Where a zone is narrower than it should be, what lies round it is balanced up to this many times as far as it should reach.
 const BEYOND: f64 = 2.0;
 
+/// Exponents below this have fluxes that are too singular for a balance beside the vertex.
+const LEAST_BALANCED: f64 = 0.4;
+
 /// Nodes within the clear distance for each function.
 const NODES_PER_FUNCTION: f64 = 1.5;
 
@@ -68,6 +71,8 @@ pub(super) struct Vertex {
     /// How far from it fits take its functions even where they do not see it.
     zone: f64,
     held: bool,
+    /// Its functions leave much beyond the zone, which is narrower than it should be: other singular points are near.
+    narrow: bool,
     /// Two prescribed values meet: a value right there says nothing.
     ambiguous: bool,
 }
@@ -115,12 +120,13 @@ impl Vertices {
             let spacing = nodes.nearest_one(&in_space(local.at)).map(|j| problem.cloud.spacing()[j as usize]);
             let wanted = ZONE * degree as f64 * spacing.unwrap_or(0.0);
             match Vertex::new(problem, params, unknowns, nodes, local.clone(), &known, &mut source) {
-                Ok(vertex) => {
+                Ok(mut vertex) => {
                     if let Some(power) =
                         vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64)
                     {
                         if vertex.zone < wanted && power < SEVERE {
                             all.unserved.push((local.at, BEYOND * wanted));
+                            vertex.narrow = power >= LEAST_BALANCED && !vertex.ambiguous;
                         }
                         all.corners.push(report(power, None));
                         all.served.push(vertex);
@@ -159,6 +165,16 @@ impl Vertices {
     fn nearest<const D: usize>(&self, x: &[f64; D]) -> Option<(usize, f64)> {
         let distances = self.served.iter().enumerate().map(|(k, vertex)| (k, vertex.distance(x)));
         distances.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Distance of a point from the nearest vertex with functions of its own.
+    pub(super) fn distance<const D: usize>(&self, x: &[f64; D]) -> f64 {
+        self.nearest(x).map_or(f64::INFINITY, |(_, distance)| distance)
+    }
+
+    /// Whether a point is a vertex with functions of its own.
+    pub(super) fn is_one_at(&self, x: &[f64; 2]) -> bool {
+        self.served.iter().any(|vertex| vertex.distance(x) <= AT_VERTEX * vertex.local.clear)
     }
 
     pub(super) fn get(&self, k: usize) -> &Vertex {
@@ -310,7 +326,12 @@ impl Vertex {
         if found.iter().filter(&mut holds).take(enough).count() < enough {
             return Err(Obstacle::Spacing);
         }
-        Ok(Self { local, solution, scales, units, parts, zone, held, ambiguous })
+        Ok(Self { local, solution, scales, units, parts, zone, held, narrow: false, ambiguous })
+    }
+
+    /// Whether other singular points are so near that its functions alone do not conserve heat, and fluxes beside it can be integrated.
+    pub(super) fn is_narrow(&self) -> bool {
+        self.narrow
     }
 
     /// How far a point is away.

@@ -225,40 +225,9 @@ pub(super) fn trace<'a>(
     curves
 }
 
-/// Points and weights of Gauss and Legendre's rule on the unit interval.
-pub(super) fn gauss(count: usize) -> Vec<(f64, f64)> {
-    let n = count as f64;
-    let point = |k: usize| {
-        let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        // Newton's method converges in five steps from there.
-        for _ in 0..8 {
-            let (mut p, mut before) = (1.0, 0.0);
-            for m in 1..=count {
-                let m = m as f64;
-                (p, before) = (((2.0 * m - 1.0) * x * p - (m - 1.0) * before) / m, p);
-            }
-            slope = n * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..count).map(point).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn gauss_points_integrate_polynomials() {
-        for n in 1..8 {
-            for degree in 0..2 * n {
-                let sum: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
-                assert!((sum - 1.0 / (degree as f64 + 1.0)).abs() < 1e-14, "{n} {degree} {sum}");
-            }
-        }
-    }
 
     #[test]
     fn curves_are_cut_where_the_key_changes() {

@@ -4,10 +4,10 @@
 //! two. A cell is used only if its faces close it: what a cell misses of its surface, its balance would miss of the flux.
 
 use meshless_cells::{CellScratch, Container, FaceKind, box_planes, voronoi_cell};
-use meshless_geometry::{Aabb, FaceId, Shape};
+use meshless_geometry::{Aabb, FaceId, Shape, gauss, gauss_from_corner};
 use meshless_neighbors::CellList;
 
-use super::curve::{Curve, Level, Piece, curves, gauss, trace};
+use super::curve::{Curve, Level, Piece, curves, trace};
 use crate::sharp::maker::Maker;
 use crate::{Condition, MethodError, Problem, parallel};
 
@@ -23,6 +23,12 @@ const CLOSED: f64 = 1e-5;
 
 /// Points of a face beyond half the order: faces may be curved.
 const POINTS_BEYOND: usize = 2;
+
+/// Points of a face that ends in a vertex, where its flux may be infinite.
+const POINTS_FROM_VERTEX: usize = 16;
+
+/// How often a face beside a vertex is halved at most.
+const MOST_HALVINGS: usize = 12;
 
 /// Squares of a spacing that a level set is looked for in at most: it is made by an expression that is asked in each.
 const MOST_SEARCHED: f64 = 4e6;
@@ -81,6 +87,7 @@ struct Geometry<'a, 'b, const D: usize> {
     regions: &'b [OfRegion],
     lists: Vec<CellList<'b, 2>>,
     rule: Vec<(f64, f64)>,
+    rule_from_vertex: Vec<(f64, f64)>,
 }
 
 fn wide<const D: usize>(x: &[f64; 2]) -> [f64; D] {
@@ -112,7 +119,8 @@ impl<const D: usize> Faces<D> {
         let lists: Result<Vec<_>, _> =
             regions.iter().map(|region| CellList::new(&region.places, 3.0 * widest)).collect();
         let rule = gauss(maker.params.degree() / 2 + POINTS_BEYOND);
-        let geometry = Geometry { problem, maker, regions: &regions, lists: lists?, rule };
+        let rule_from_vertex = gauss_from_corner(POINTS_FROM_VERTEX);
+        let geometry = Geometry { problem, maker, regions: &regions, lists: lists?, rule, rule_from_vertex };
         let cells = parallel::map_with(count, CellScratch::default, |scratch, i| {
             if wanted[i] { geometry.cell(i, scratch) } else { None }
         });
@@ -188,16 +196,43 @@ impl<const D: usize> Geometry<'_, '_, D> {
 
     fn face(&self, curve: &Curve<'_>, [from, to]: [f64; 2], node: u32, beyond: Beyond, sign: f64) -> Face<D> {
         let mut area = 0.0;
-        let points = self.rule.iter().map(|(t, weight)| {
-            let (x, normal) = curve.at(from + t * (to - from));
+        let points = self.parameters(curve, [from, to]).into_iter().map(|(t, weight)| {
+            let (x, normal) = curve.at(t);
             let length = normal[0].hypot(normal[1]);
-            let weight = weight * (to - from) * length;
+            let weight = weight * length;
             area += weight;
             FacePoint { at: wide(&x), normal: wide(&normal.map(|n| sign * n / length)), weight }
         });
         let points = points.collect();
         let middle = wide(&curve.at(0.5 * (from + to)).0);
         Face { node, beyond, middle, area, points }
+    }
+
+    /// Quadrature over a part of a curve: halved beside a vertex, where fluxes vary fast, and graded towards one that it ends in.
+    fn parameters(&self, curve: &Curve<'_>, whole: [f64; 2]) -> Vec<(f64, f64)> {
+        let place = |t: f64| curve.at(t).0;
+        let away = |x: &[f64; 2]| self.maker.vertices.distance(x);
+        let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        let mut found = Vec::new();
+        let mut waiting = vec![(whole, 0)];
+        while let Some(([from, to], halvings)) = waiting.pop() {
+            let middle = 0.5 * (from + to);
+            let ends = [from, to].map(|t| self.maker.vertices.is_one_at(&place(t)));
+            let near = away(&place(middle)) < apart(place(from), place(to));
+            let ([begin, end], rule) = match ends {
+                [true, false] => ([from, to], &self.rule_from_vertex),
+                [false, true] => ([to, from], &self.rule_from_vertex),
+                [false, false] if !near || halvings == MOST_HALVINGS => ([from, to], &self.rule),
+                _ => {
+                    waiting.extend([([middle, to], halvings + 1), ([from, middle], halvings + 1)]);
+                    continue;
+                }
+            };
+            let points =
+                rule.iter().map(|(t, weight)| (begin + t * (end - begin), weight * (end - begin).abs()));
+            found.extend(points);
+        }
+        found
     }
 
     /// The faces of a cell with nodes of its own region.

@@ -10,10 +10,11 @@ mod flux;
 
 use std::collections::BTreeMap;
 
+use meshless_geometry::gauss;
+
 use super::maker::{Maker, Row, Scratch};
 use super::params::Conservation;
 use crate::{MethodError, parallel};
-use curve::gauss;
 use faces::{Face, Faces};
 use flux::Flux;
 
@@ -28,10 +29,10 @@ pub(super) fn replace<const D: usize>(maker: &Maker<'_, D>, rows: &mut [Row]) ->
         wanted[row.node] = match maker.params.conservation {
             Conservation::None => false,
             // Functions of a vertex are exact there, and fluxes beside it singular.
-            Conservation::Crossing => {
-                let x = &maker.problem.cloud.points()[row.node];
-                !row.at_vertex && (row.crosses || maker.vertices.leaves_much(x))
-            }
+            Conservation::Crossing => match row.vertex {
+                Some(vertex) => maker.vertices.get(vertex).is_narrow(),
+                None => row.crosses || maker.vertices.leaves_much(&maker.problem.cloud.points()[row.node]),
+            },
             Conservation::All => true,
         };
     }

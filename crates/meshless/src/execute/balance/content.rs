@@ -4,9 +4,9 @@
 //! integral of f along an axis. Where f is not smooth beyond its region, so that the latter does not converge, and for what is known at
 //! nodes only, the mean over the nodes times the volume serves.
 
+use meshless_geometry::gauss;
 use meshless_interfaces::{Field, Problem};
 
-use super::gauss::gauss;
 use super::surfaces::Surfaces;
 
 /// Points along a line, one number after the other until two agree.

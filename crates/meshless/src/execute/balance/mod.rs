@@ -5,7 +5,6 @@
 //! prescribed, and at interfaces, it is that of the method's own polynomials, or of a fit to the nodes of one region.
 
 mod content;
-mod gauss;
 mod pieces;
 mod surfaces;
 
@@ -22,9 +21,6 @@ use crate::report::{BalanceReport, BoundaryFlux, InterfaceFlux, RegionBalance, S
 use crate::scene::Scene;
 use content::{Body, Content};
 use surfaces::{Surfaces, Wall};
-
-/// How often panels get smaller towards corners where many points share one fit.
-const LEVELS: usize = 8;
 
 /// Degree of the fits that those of the second degree are compared with.
 const OTHER_DEGREE: usize = 3;
@@ -84,7 +80,7 @@ impl<const D: usize> Ledger<D> {
         let problem = solved.discrete.problem();
         let boundary = Boundary::new(scene, problem.domain);
         let shared = matches!(plan.method.params, MethodParams::Sharp(_)) && solved.system.rates.is_none();
-        let surfaces = Surfaces::new(&problem, &boundary, if shared { LEVELS } else { 0 })?;
+        let surfaces = Surfaces::new(&problem, &boundary, shared)?;
         let measures = solved.discrete.measures();
         let bodies = Body::all(&problem, &surfaces, &measures);
         let own = |label: usize, values: &[f64]| -> Vec<(f64, f64)> {

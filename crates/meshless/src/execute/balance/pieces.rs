@@ -1,8 +1,6 @@
 //! Quadrature over a patch of a surface: divided where something else begins on it, with Gauss points on every part.
 
-use meshless_geometry::{Element, Patch};
-
-use super::gauss::gauss;
+use meshless_geometry::{Element, Patch, gauss, gauss_from_corner};
 
 /// Panels are so many spacings long at most.
 const PANEL: f64 = 2.0;
@@ -31,9 +29,13 @@ const HALVINGS: usize = 52;
 /// Changes that are looked for between two probes at most.
 const CHANGES: usize = 4;
 
-/// Ratio of panels that get smaller towards corners, from a spacing on: alike on both sides of a corner, where fluxes may be infinite and
-/// cancel.
-const RATIO: f64 = 0.2;
+/// Points of a panel that begins at a corner, where fluxes may be infinite.
+const POINTS_FROM_CORNER: usize = 16;
+
+/// Length of such a panel in spacings: alike on both sides of a corner, where infinite fluxes may cancel. And the part of a panel
+/// that it takes at most.
+const FROM_CORNER: f64 = 1.0;
+const MOST_FROM_CORNER: f64 = 0.8;
 
 /// Distance in the parameter below which changes seen from two lines over a patch are the same straight edge.
 const SAME: f64 = 1e-9;
@@ -48,8 +50,8 @@ pub(super) struct Rule<'a, const D: usize> {
     pub(super) spacing: &'a dyn Fn(&[f64; D]) -> f64,
     /// The least of them.
     pub(super) least: f64,
-    /// Panels that get smaller towards a corner in the plane; 0 where what is integrated knows of no corners.
-    pub(super) levels: usize,
+    /// Whether what is integrated in the plane may be infinite at corners.
+    pub(super) corners: bool,
 }
 
 /// A part of the parameter on which everything is of one kind.
@@ -57,8 +59,8 @@ struct Part<T> {
     from: f64,
     to: f64,
     kind: T,
-    /// Whether panels get smaller towards its ends.
-    graded: [bool; 2],
+    /// Whether its ends are corners.
+    corners: [bool; 2],
 }
 
 impl<const D: usize> Rule<'_, D> {
@@ -132,7 +134,7 @@ impl<const D: usize> Rule<'_, D> {
             }
         }
         edges.push(1.0);
-        edges.windows(2).map(|e| Part { from: e[0], to: e[1], kind: (), graded: [false; 2] }).collect()
+        edges.windows(2).map(|e| Part { from: e[0], to: e[1], kind: (), corners: [false; 2] }).collect()
     }
 
     /// The parts of a parameter that count.
@@ -143,7 +145,9 @@ impl<const D: usize> Rule<'_, D> {
         kind: &dyn Fn(f64) -> Option<T>,
     ) -> Vec<Part<T>> {
         let parts = self.all_parts(patch, axis, kind).into_iter();
-        parts.filter_map(|p| Some(Part { from: p.from, to: p.to, graded: p.graded, kind: p.kind? })).collect()
+        parts
+            .filter_map(|p| Some(Part { from: p.from, to: p.to, corners: p.corners, kind: p.kind? }))
+            .collect()
     }
 
     /// All parts of a parameter.
@@ -158,7 +162,7 @@ impl<const D: usize> Rule<'_, D> {
         let middles = (0..cells as usize).map(|k| (k as f64 + 0.5) / cells);
         let probes = std::iter::once(near).chain(middles).chain(std::iter::once(1.0 - near));
         let first = kind(near);
-        let mut parts = vec![Part { from: 0.0, to: 1.0, kind: first, graded: [patch.ends[axis]; 2] }];
+        let mut parts = vec![Part { from: 0.0, to: 1.0, kind: first, corners: [patch.ends[axis]; 2] }];
         let mut before = near;
         for probe in probes {
             let here = kind(probe);
@@ -170,9 +174,9 @@ impl<const D: usize> Rule<'_, D> {
                     *(if kind(middle) == last.kind { &mut low } else { &mut high }) = middle;
                 }
                 let change = 0.5 * (low + high);
-                let graded = [true, last.graded[1]];
-                (last.to, last.graded[1]) = (change, true);
-                parts.push(Part { from: change, to: 1.0, kind: kind(high), graded });
+                let corners = [true, last.corners[1]];
+                (last.to, last.corners[1]) = (change, true);
+                parts.push(Part { from: change, to: 1.0, kind: kind(high), corners });
                 before = high;
             }
             before = probe;
@@ -192,17 +196,24 @@ impl<const D: usize> Rule<'_, D> {
         let (most, least) =
             (POINTS[D - 1], if patch.is_chord() { LEAST_ON_CHORD } else { LEAST_POINTS[D - 1] });
         let mut found = Vec::new();
+        let of_corners = self.corners && D == 2;
         for (from, to) in self.panels(patch, axis, part, at) {
-            let length = extent * (to - from);
+            // Panels that begin at a corner have it at their first end.
+            let length = extent * (to - from).abs();
             let spacing = (self.spacing)(&patch.at(at(0.5 * (from + to))).at);
-            let points = (most as f64 * length / (PANEL * spacing)).ceil() as usize;
-            let rule = gauss(points.clamp(least, most));
-            found.extend(rule.into_iter().map(|(x, w)| (from + (to - from) * x, w * (to - from))));
+            let begins = |end: f64, is_corner: bool| of_corners && is_corner && from == end;
+            let rule = if begins(part.from, part.corners[0]) || begins(part.to, part.corners[1]) {
+                gauss_from_corner(POINTS_FROM_CORNER)
+            } else {
+                let points = (most as f64 * length / (PANEL * spacing)).ceil() as usize;
+                gauss(points.clamp(least, most))
+            };
+            found.extend(rule.into_iter().map(|(x, w)| (from + (to - from) * x, w * (to - from).abs())));
         }
         found
     }
 
-    /// Panels of a part: as long as spacings are, shorter towards corners in the plane.
+    /// Panels of a part, as long as spacings are; in the plane one of its own at every corner, from there on.
     fn panels<T>(
         &self,
         patch: &Patch<'_, D>,
@@ -210,8 +221,8 @@ impl<const D: usize> Rule<'_, D> {
         part: &Part<T>,
         at: &dyn Fn(f64) -> [f64; 2],
     ) -> Vec<(f64, f64)> {
-        let levels = if D == 2 { self.levels } else { 0 };
-        let both = levels > 0 && part.graded == [true; 2];
+        let of_corners = self.corners && D == 2;
+        let both = of_corners && part.corners == [true; 2];
         let share = (part.to - part.from) * patch.parts[axis] as f64;
         let first = share.ceil().max(if both { 2.0 } else { 1.0 }) as usize;
         let cut = |k: usize| part.from + (part.to - part.from) * k as f64 / first as f64;
@@ -228,27 +239,25 @@ impl<const D: usize> Rule<'_, D> {
                 panels.push((from, to));
             }
         }
-        if levels == 0 || panels.is_empty() {
+        if !of_corners || panels.is_empty() {
             return panels;
         }
-        // Cuts towards an end, nearest first, within the panel there.
-        let towards = |end: f64, other: f64| -> Vec<f64> {
-            let spacing = (self.spacing)(&patch.at(at(end)).at) / patch.extent[axis];
-            let from = (other - end).signum() * spacing.min((1.0 - RATIO) * (other - end).abs());
-            (0..levels).rev().map(|k| end + from * RATIO.powi(k as i32)).collect()
+        // Where the panel of a corner ends, within the one that is there.
+        let towards = |end: f64, other: f64| {
+            let length = FROM_CORNER * (self.spacing)(&patch.at(at(end)).at) / patch.extent[axis];
+            end + (other - end).signum() * length.min(MOST_FROM_CORNER * (other - end).abs())
         };
-        let mut cuts: Vec<f64> = panels.iter().map(|p| p.0).chain(std::iter::once(part.to)).collect();
-        if part.graded[1] {
-            let other = cuts[cuts.len() - 2];
-            let mut more = towards(part.to, other);
-            more.reverse();
-            let last = cuts.len() - 1;
-            cuts.splice(last..last, more);
+        if let Some(last) = panels.last_mut().filter(|_| part.corners[1]) {
+            let cut = towards(part.to, last.0);
+            last.1 = cut;
+            panels.push((part.to, cut));
         }
-        if part.graded[0] {
-            let other = cuts[1];
-            cuts.splice(1..1, towards(part.from, other));
+        if part.corners[0] {
+            let first = &mut panels[0];
+            let cut = towards(part.from, first.1);
+            first.0 = cut;
+            panels.insert(0, (part.from, cut));
         }
-        cuts.windows(2).map(|c| (c[0], c[1])).filter(|(from, to)| to > from).collect()
+        panels
     }
 }

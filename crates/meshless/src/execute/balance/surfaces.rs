@@ -47,11 +47,11 @@ pub(super) struct Surfaces<const D: usize> {
 }
 
 impl<const D: usize> Surfaces<D> {
-    /// `levels` is how often panels get smaller towards corners.
+    /// `corners` tells whether fluxes may be infinite at corners in the plane.
     pub(super) fn new(
         problem: &Problem<'_, D>,
         boundary: &Boundary<D>,
-        levels: usize,
+        corners: bool,
     ) -> Result<Self, NeighborError> {
         let spacings = problem.cloud.spacing();
         let least = spacings.iter().fold(f64::INFINITY, |a, &b| a.min(b));
@@ -60,7 +60,7 @@ impl<const D: usize> Surfaces<D> {
         let near = |x: &[f64; D]| index.nearest_one(x).map_or(least, |i| spacings[i as usize]);
         let uniform = |_: &[f64; D]| least;
         let spacing: &dyn Fn(&[f64; D]) -> f64 = if most > least { &near } else { &uniform };
-        let rule = Rule { spacing, least, levels };
+        let rule = Rule { spacing, least, corners };
         let bounds = problem.domain.bounds();
         let size = (bounds.measure() / (CELLS * problem.cloud.len() as f64)).powf(1.0 / D as f64);
         Ok(Self { walls: walls(problem, boundary, &rule, size), seams: seams(problem, &rule, size) })
