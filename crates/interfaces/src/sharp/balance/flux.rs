@@ -72,12 +72,6 @@ impl<const D: usize> Maker<'_, D> {
         }
         let softer = usize::from(crosses && self.conductivity(nodes[1]) < self.conductivity(nodes[0]));
         self.factor_at((&face.middle, parts[softer], Heard::All), scratch, |_| true)?;
-        let Scratch { stencil, .. } = scratch;
-        if !nodes.iter().all(|j| stencil.nodes.contains(j)) {
-            return None;
-        }
-        let places = parts.map(|part| stencil.parts.iter().position(|&p| p == part));
-        let places = [places[0]?, places[1]?];
         let points = self.problem.cloud.points();
         let distance = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
         let [x, y] = nodes.map(|j| &points[j as usize]);
@@ -89,17 +83,27 @@ impl<const D: usize> Maker<'_, D> {
         let conductance = face.area / (ways[0] / eta[0] + ways[1] / eta[1]);
         let mut wanted = self.gradients(face, labels[softer], scratch);
         let Scratch { stencil, .. } = scratch;
+        // Functions of a vertex may not reach both nodes: then there is nothing that their values could miss.
+        let misfits = nodes.iter().all(|j| stencil.nodes.contains(j));
+        if !misfits && stencil.vertex.is_none() {
+            return None;
+        }
         let local = |x: &[f64; D]| std::array::from_fn(|k| (x[k] - stencil.center[k]) / stencil.radius);
         let scales = parts.map(|part| self.unknowns.scale[part as usize]);
-        for (side, sign) in [(0, 1.0), (1, -1.0)] {
-            let z = local(&points[nodes[side] as usize]);
-            let functional = Row::of_value(sign * conductance * scales[side]);
-            wanted.push(Wanted { part: places[side], z, functional });
+        if misfits {
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                let part = stencil.parts.iter().position(|&p| p == parts[side])?;
+                let z = local(&points[nodes[side] as usize]);
+                let functional = Row::of_value(sign * conductance * scales[side]);
+                wanted.push(Wanted { part, z, functional });
+            }
         }
         let size = conductance * scales[softer];
         let mut flux = self.combined(&wanted, size, scratch)?;
-        flux.add_value(nodes[0], -conductance * scales[0]);
-        flux.add_value(nodes[1], conductance * scales[1]);
+        if misfits {
+            flux.add_value(nodes[0], -conductance * scales[0]);
+            flux.add_value(nodes[1], conductance * scales[1]);
+        }
         self.add_sum(&mut flux, scratch);
         let jump = self.problem.jump_between(labels[0], labels[1]).filter(|_| crosses);
         if let Some(field) = jump.and_then(|(jump, _)| jump.flux.as_ref()) {
