@@ -1,7 +1,7 @@
 //! Interfaces and boundaries in the plane as smooth pieces of curves, and the vertices where these meet.
 //!
 //! Sides of boxes, edges of polygons, lines and circles are cut where they cross; what remains is every piece with different
-//! things on its two sides. Level sets have no pieces, but vertices know how near they are.
+//! things on its two sides. Level sets have no pieces, but cut those of others, and vertices know how near they are.
 
 mod curve;
 mod vertices;
@@ -22,6 +22,9 @@ const BESIDE: f64 = 1e-4;
 
 /// Size of the pieces in which level sets are looked at, over the diameter of the domain.
 const SAMPLED: f64 = 5e-3;
+
+/// Halvings of a step in which a curve crosses a level set.
+const HALVINGS: usize = 52;
 
 /// Curves beyond which vertices are not looked for: each of so many is far smaller than any spacing, and what they outline
 /// is a curve.
@@ -61,6 +64,8 @@ pub struct PlanarPieces {
     /// Points on the surfaces of shapes that have no such pieces, and how far apart they are: nothing is clear beyond them.
     others: Vec<[f64; 2]>,
     between_others: f64,
+    /// Where level sets cut pieces.
+    crossings: Vec<[f64; 2]>,
     /// Points nearer than this to each other are one.
     tolerance: f64,
 }
@@ -75,13 +80,15 @@ impl PlanarPieces {
             return Self { tolerance, ..Self::default() };
         }
         let between_others = SAMPLED * domain.bounds().diameter();
-        let others = if D == 2 { others(domain, regions, between_others) } else { Vec::new() };
+        let levels = if D == 2 { level_sets(domain, regions) } else { Vec::new() };
+        let others = others(&levels, domain, between_others);
         let label = |x: [f64; 2]| {
             let x: [f64; D] = std::array::from_fn(|k| x[k]);
             domain.contains(&x, 0.0).then(|| regions.label(&x, 0.0))
         };
         let mut pieces: Vec<PlanarPiece> = Vec::new();
-        for (curve, face) in cut(&curves, tolerance) {
+        let mut crossings = Vec::new();
+        for (curve, face) in cut(&curves, &levels, (tolerance, between_others), &mut crossings) {
             let step = BESIDE * curve.length();
             let (middle, normal) = (curve.at(0.5), curve.left(0.5));
             let sides = [step, -step].map(|t| label(axpy(&middle, t, &normal)));
@@ -105,7 +112,7 @@ impl PlanarPieces {
                 kept.push(piece);
             }
         }
-        Self { pieces: kept, others, between_others, tolerance }
+        Self { pieces: kept, others, between_others, crossings, tolerance }
     }
 
     /// The pieces.
@@ -159,16 +166,52 @@ fn curves<const D: usize>(domain: &Domain<D>, regions: &RegionMap<D>) -> Vec<(Cu
     found
 }
 
-/// Points on the surfaces of level sets.
-fn others<const D: usize>(domain: &Domain<D>, regions: &RegionMap<D>, size: f64) -> Vec<[f64; 2]> {
+/// The level sets of a scene.
+fn level_sets<'a, const D: usize>(domain: &'a Domain<D>, regions: &'a RegionMap<D>) -> Vec<&'a Shape<D>> {
     let faces = domain.curved_faces().into_iter().map(|(_, shape, _)| shape);
     let shapes = faces.chain((0..regions.len() as u16).filter_map(|label| regions.shape(label)));
-    let leaves = shapes.flat_map(Shape::leaves).filter(|(leaf, _)| matches!(leaf, Shape::LevelSet(_)));
-    leaves.flat_map(|(leaf, _)| leaf.elements(&domain.bounds(), size)).map(|e| [e.at[0], e.at[1]]).collect()
+    let leaves = shapes.flat_map(Shape::leaves).map(|(leaf, _)| leaf);
+    leaves.filter(|leaf| matches!(leaf, Shape::LevelSet(_))).collect()
 }
 
-/// Every curve in pieces between the places where others cross or touch it.
-fn cut(curves: &[(Curve, Option<FaceId>)], tolerance: f64) -> Vec<(Curve, Option<FaceId>)> {
+/// Points on the surfaces of level sets.
+fn others<const D: usize>(levels: &[&Shape<D>], domain: &Domain<D>, size: f64) -> Vec<[f64; 2]> {
+    let all = levels.iter().flat_map(|leaf| leaf.elements(&domain.bounds(), size));
+    all.map(|e| [e.at[0], e.at[1]]).collect()
+}
+
+/// Places of a curve, as parts of its length, where it crosses a level set; looked for in steps of a size.
+fn crossings<const D: usize>(curve: &Curve, level: &Shape<D>, size: f64) -> Vec<f64> {
+    let inside = |t: f64| {
+        let x = curve.at(t);
+        level.level(&std::array::from_fn(|k| x[k])) < 0.0
+    };
+    let steps = (curve.length() / size).ceil().max(1.0) as usize;
+    let mut found = Vec::new();
+    let (mut before, mut was_inside) = (0.0, inside(0.0));
+    for step in 1..=steps {
+        let here = step as f64 / steps as f64;
+        let is_inside = inside(here);
+        if is_inside != was_inside {
+            let (mut low, mut high) = (before, here);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if inside(middle) == was_inside { &mut low } else { &mut high }) = middle;
+            }
+            found.push(0.5 * (low + high));
+        }
+        (before, was_inside) = (here, is_inside);
+    }
+    found
+}
+
+/// Every curve in pieces between the places where others and level sets cross or touch it. `crossed` gets those of level sets.
+fn cut<const D: usize>(
+    curves: &[(Curve, Option<FaceId>)],
+    levels: &[&Shape<D>],
+    (tolerance, size): (f64, f64),
+    crossed: &mut Vec<[f64; 2]>,
+) -> Vec<(Curve, Option<FaceId>)> {
     let mut places: Vec<Vec<f64>> = vec![Vec::new(); curves.len()];
     let boxes: Vec<[[f64; 2]; 2]> = curves.iter().map(|(curve, _)| curve.bounds(tolerance)).collect();
     let mut order: Vec<usize> = (0..curves.len()).collect();
@@ -181,6 +224,17 @@ fn cut(curves: &[(Curve, Option<FaceId>)], tolerance: f64) -> Vec<(Curve, Option
                     places[j].push(curves[j].0.place_of(&x));
                 }
             }
+        }
+    }
+    for ((curve, _), places) in curves.iter().zip(&mut places) {
+        for level in levels {
+            let inside = tolerance / curve.length();
+            let found: Vec<f64> = crossings(curve, level, size)
+                .into_iter()
+                .filter(|t| (inside..=1.0 - inside).contains(t))
+                .collect();
+            crossed.extend(found.iter().map(|&t| curve.at(t)));
+            places.extend(found);
         }
     }
     let pieces = curves.iter().zip(places).flat_map(|((curve, face), places)| {

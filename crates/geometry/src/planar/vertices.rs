@@ -64,7 +64,10 @@ impl PlanarPieces {
                 .filter(|&k| !taken[k] && distance(&ends[k].at, &at) <= 4.0 * self.tolerance)
                 .collect();
             here.iter().for_each(|&k| taken[k] = true);
-            points.push((at, here));
+            // The interface that leaves a crossing with a level set is no piece, so nothing is known of what meets there.
+            if !self.crossings.iter().any(|x| distance(x, &at) <= 4.0 * self.tolerance) {
+                points.push((at, here));
+            }
         }
         let broken = |at: &[f64; 2]| breaks.iter().any(|b| distance(b, at) <= 4.0 * self.tolerance);
         let leads_on = |at: &[f64; 2], here: &[usize]| {
@@ -248,6 +251,21 @@ mod tests {
         assert_eq!(middle.sectors, [Some(0), Some(1), Some(0), Some(1)]);
         let broken = vertices.iter().find(|v| v.at == [0.25, 1.0]).expect("there");
         assert_eq!((broken.rays.len(), broken.clear), (2, 0.25));
+    }
+
+    #[test]
+    fn corners_beyond_a_level_set_belong_to_their_own_region() {
+        // The curve leaves the square below, nearer to the left corner than to the middle, and above, nearer to the right one.
+        let domain = Domain::boxed([-1.0; 2], [1.0; 2]).expect("a domain");
+        let curve = Shape::level_set(std::sync::Arc::new(|x: &[f64; 2]| 2.0 * x[0].powi(3) - x[1]));
+        let regions = RegionMap::new(vec![Some(curve), None]).expect("regions");
+        let vertices = PlanarPieces::new(&domain, &regions).vertices(&[]);
+        assert_eq!(vertices.len(), 4);
+        for vertex in vertices {
+            let expected = u16::from(2.0 * vertex.at[0].powi(3) > vertex.at[1]);
+            let found: Vec<u16> = vertex.sectors.iter().copied().flatten().collect();
+            assert_eq!(found, [expected], "{:?}", vertex.at);
+        }
     }
 
     #[test]
