@@ -13,7 +13,8 @@ pub(super) struct Judged {
     pub(super) values: Option<[f64; 2]>,
     /// Largest error of a flux over the largest flux.
     pub(super) flux: Option<f64>,
-    /// Largest error, of a probe or a flux, over the estimate that the report gives for its region or the whole.
+    /// Largest error, over what the report gives for it: of a probe, the estimate for its region or the whole; of a flux, that or what
+    /// is left over of the balance.
     pub(super) over_estimate: Option<f64>,
 }
 
@@ -62,15 +63,17 @@ fn fluxes(case: &Case, parameter: f64, report: &Report) -> Vec<Error> {
     let scale = known.iter().map(|f| f.value.abs()).fold(0.0, f64::max);
     let error = |figure: &&Figure| {
         let entry = case.conditions.iter().position(|name| *name == figure.name)?;
-        let flux = report.fluxes.as_ref()?.boundaries.iter().find(|b| b.entry == entry)?.flux;
-        Some((beyond(flux - figure.value, figure) / scale, report.estimate.l2))
+        let balance = report.balance.as_ref()?;
+        let flux = balance.into.iter().find(|b| b.entry == entry)?.flux;
+        let told = report.estimate.l2.map(|estimate| estimate.max(balance.left_over.abs() / scale));
+        Some((beyond(flux - figure.value, figure) / scale, told))
     };
     known.iter().filter_map(error).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use meshless::report::{BoundaryFlux, Estimate, FluxReport, Probe, Report};
+    use meshless::report::{BalanceReport, BoundaryFlux, Estimate, Probe, Report};
     use meshless_tests::natural::references::{self, Quantity};
 
     use super::super::cases::CASES;
@@ -97,9 +100,9 @@ mod tests {
                 value: Some(value.value + 0.02 * rms.value),
                 velocity: None,
             }],
-            fluxes: Some(FluxReport {
-                boundaries: vec![BoundaryFlux { flux: 0.5 * flux.value, ..BoundaryFlux::default() }],
-                ..FluxReport::default()
+            balance: Some(BalanceReport {
+                into: vec![BoundaryFlux { flux: 0.5 * flux.value, ..BoundaryFlux::default() }],
+                ..BalanceReport::default()
             }),
             estimate: Estimate { l2: Some(0.1), ..Estimate::default() },
             ..Report::default()

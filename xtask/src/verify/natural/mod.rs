@@ -50,9 +50,6 @@ fn has_orders(effort: Effort) -> bool {
     effort > Effort::Quick
 }
 
-/// Asks for fluxes; methods that know no gradient at interfaces refuse them.
-const FLUXES: &str = "[output]\nfluxes = true\n";
-
 pub(super) fn run(options: &Options) -> Study {
     let mut runner = Runner::new(SUITE, options);
     let mut claims = Claims::new(SUITE, options.is_filtered());
@@ -74,9 +71,8 @@ fn jobs(case: &Case, effort: Effort) -> Vec<Job> {
     let parameters = case.parameters(effort);
     let job = |variant: Variant, parameter: f64, level: usize| {
         let text = (case.scene)(parameter, case.spacing(level), 1);
-        let asks = !variant.method.starts_with("gfdm");
         Job {
-            problem: if asks { text + FLUXES } else { text },
+            problem: text,
             key: Key { case: case.case, variant, jump: parameter, level, seed: 1 },
             extra: Extra { estimate: true, ..Extra::default() },
         }
