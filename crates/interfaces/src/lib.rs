@@ -77,7 +77,9 @@ pub use field::{Field, ScalarField};
 pub use gradient_rows::GradientRow;
 #[doc(hidden)]
 pub use instances::instances;
-pub use method::{Counts, Discretization, InterfacePoint, Method, RowKind, SplitRows};
+pub use method::{
+    Counts, Discretization, InterfaceFlow, InterfaceFlux, InterfacePoint, Method, RowKind, SplitRows,
+};
 pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};

@@ -79,6 +79,46 @@ pub struct Discretization {
     /// The vertices at which the solution is no polynomial, and which of them the method has functions for; `None` for a method that
     /// does not look for them.
     pub corners: Option<Vec<Corner>>,
+    /// Fluxes through interfaces as balances have them, where a method has balances all along an interface on which the slope of u may be
+    /// infinite.
+    pub interface_fluxes: Vec<InterfaceFlux>,
+}
+
+/// The flux through the interface of two regions, `int eta du/dn` with n out of the first one: a functional of what rows act on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InterfaceFlux {
+    /// The regions, in ascending order.
+    pub between: [u16; 2],
+    /// Area of the interface.
+    pub area: f64,
+    /// Nodes and factors of their values, once each.
+    pub values: Vec<(u32, f64)>,
+    /// Constants and their factors.
+    pub constants: Vec<(u32, f64)>,
+    /// What the data add, as the first region sees it and as the second one does.
+    pub known: [f64; 2],
+}
+
+/// The same of a solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InterfaceFlow {
+    /// The regions, in ascending order.
+    pub between: [u16; 2],
+    /// Area of the interface.
+    pub area: f64,
+    /// `int eta du/dn` with n out of the first region, on either side.
+    pub sides: [f64; 2],
+}
+
+impl InterfaceFlux {
+    /// The flux for values of the nodes and of the constants.
+    pub(crate) fn of(&self, values: &[f64], constants: &[f64]) -> InterfaceFlow {
+        let sum = |factors: &[(u32, f64)], of: &[f64]| -> f64 {
+            factors.iter().map(|(k, factor)| factor * of[*k as usize]).sum()
+        };
+        let flux = sum(&self.values, values) + sum(&self.constants, constants);
+        InterfaceFlow { between: self.between, area: self.area, sides: self.known.map(|known| flux + known) }
+    }
 }
 
 impl Discretization {
@@ -90,7 +130,8 @@ impl Discretization {
         counts: Counts,
         stencil_seconds: f64,
     ) -> Self {
-        let (constants, mass, interface_points, gradients, corners) = (None, None, Vec::new(), None, None);
+        let (constants, mass, gradients, corners) = (None, None, None, None);
+        let (interface_points, interface_fluxes) = (Vec::new(), Vec::new());
         Self {
             rows,
             rhs,
@@ -103,6 +144,7 @@ impl Discretization {
             interface_points,
             gradients,
             corners,
+            interface_fluxes,
         }
     }
 

@@ -52,17 +52,20 @@ struct Dual {
 impl Dual {
     const ZERO: Self = Self { value: 0.0, slope: [0.0; 3] };
 
+    #[inline]
     fn coordinate(x: f64, axis: usize) -> Self {
         let mut slope = [0.0; 3];
         slope[axis] = 1.0;
         Self { value: x, slope }
     }
 
+    #[inline]
     fn times(self, other: Self) -> Self {
         let slope = std::array::from_fn(|k| self.slope[k] * other.value + self.value * other.slope[k]);
         Self { value: self.value * other.value, slope }
     }
 
+    #[inline]
     fn combine(a: f64, one: Self, b: f64, other: Self) -> Self {
         let slope = std::array::from_fn(|k| a * one.slope[k] + b * other.slope[k]);
         Self { value: a * one.value + b * other.value, slope }

@@ -98,12 +98,13 @@ impl<const D: usize> Method<D> for Sharp {
             })?;
             let gradients =
                 maker.keeps_gradients().then(|| gradients(maker, &known, &mut rows)).transpose()?;
-            balance::replace(maker, &mut rows)?;
+            let interface_fluxes = balance::replace(maker, &mut rows)?;
             let seconds = start.elapsed().as_secs_f64();
             let corners = (D == 2).then(|| maker.vertices.corners.clone());
             Ok(Discretization {
                 gradients,
                 corners,
+                interface_fluxes,
                 ..assemble(problem, maker.unknowns, &known, &rows, seconds)?
             })
         })

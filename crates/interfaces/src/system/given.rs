@@ -37,6 +37,7 @@ pub(super) fn solve<const D: usize>(
         up_to_constant,
         split,
         rates: None,
+        interface_flows: Vec::new(),
     })
 }
 

@@ -10,7 +10,7 @@ mod pseudo_time;
 
 use meshless_sparse::{SolveInfo, SolverParams, Split};
 
-use crate::{Discretization, MethodError, Problem};
+use crate::{Discretization, InterfaceFlow, InterfaceFlux, MethodError, Problem};
 use floating::Floating;
 pub(crate) use floating::FloatingParts;
 pub use linear::{LinearSystem, linear_system};
@@ -54,6 +54,8 @@ pub struct SystemSolution {
     pub split: Option<SplitValues>,
     /// `du/dt` at the nodes; `None` in steady scenes.
     pub rates: Option<Vec<f64>>,
+    /// Fluxes through interfaces, of [`Discretization::interface_fluxes`].
+    pub interface_flows: Vec<InterfaceFlow>,
 }
 
 /// `w` and `C` of `u_i = sum_K sigma_K C_K + s_i w_i`: where `s` is tiny, `w` has digits that u has not.
@@ -71,6 +73,21 @@ pub struct SplitValues {
 /// Those of the solver; and [`MethodError::Incompatible`] where nothing fixes the constant of u and sources and fluxes
 /// do not balance.
 pub fn solve<const D: usize>(
+    problem: &Problem<'_, D>,
+    discretization: &Discretization,
+    params: &SystemParams,
+) -> Result<SystemSolution, MethodError> {
+    let solution = solve_rows(problem, discretization, params)?;
+    let (values, constants) = match &solution.split {
+        Some(split) => (&split.values, split.constants.as_slice()),
+        None => (&solution.u, [].as_slice()),
+    };
+    let flow = |flux: &InterfaceFlux| flux.of(values, constants);
+    let interface_flows = discretization.interface_fluxes.iter().map(flow).collect();
+    Ok(SystemSolution { interface_flows, ..solution })
+}
+
+fn solve_rows<const D: usize>(
     problem: &Problem<'_, D>,
     discretization: &Discretization,
     params: &SystemParams,
@@ -100,7 +117,16 @@ pub fn solve<const D: usize>(
     let (mut u, info) = prepared.solve(&rhs)?;
     let extra = u.split_off(nodes);
     let floating_constants = prepared.floating_constants();
-    Ok(SystemSolution { u, extra, info, floating_constants, up_to_constant: false, split: None, rates: None })
+    Ok(SystemSolution {
+        u,
+        extra,
+        info,
+        floating_constants,
+        up_to_constant: false,
+        split: None,
+        rates: None,
+        interface_flows: Vec::new(),
+    })
 }
 
 /// A pure Neumann problem: one node is pinned, and an extra unknown takes up what is not balanced.
@@ -133,6 +159,7 @@ fn solve_unanchored<const D: usize>(
         up_to_constant: true,
         split: None,
         rates: None,
+        interface_flows: Vec::new(),
     })
 }
 

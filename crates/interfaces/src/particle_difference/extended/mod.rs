@@ -92,6 +92,7 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
             interface_points: points.described(),
             gradients: None,
             corners: None,
+            interface_fluxes: Vec::new(),
         })
     }
 

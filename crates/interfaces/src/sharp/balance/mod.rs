@@ -6,7 +6,10 @@
 
 mod curve;
 mod faces;
+mod facet;
 mod flux;
+mod plane;
+mod space;
 
 use std::collections::BTreeMap;
 
@@ -14,16 +17,20 @@ use meshless_geometry::gauss;
 
 use super::maker::{Maker, Row, Scratch};
 use super::params::Conservation;
-use crate::{MethodError, parallel};
-use faces::{Face, Faces};
+use crate::corners::{Corner, CornerData, corners};
+use crate::{InterfaceFlux, MethodError, parallel};
+use faces::{Beyond, Face, Faces};
 use flux::Flux;
 
 /// Points along the way from a node to its cell's surface at which a source is asked for.
 const SOURCE_POINTS: usize = 5;
 
-/// Puts balances in place of the rows of the nodes that are to have one, where a cell and its fluxes can be made. Returns how many
-/// were.
-pub(super) fn replace<const D: usize>(maker: &Maker<'_, D>, rows: &mut [Row]) -> Result<usize, MethodError> {
+/// Puts balances in place of the rows of the nodes that are to have one, where a cell and its fluxes can be made. Returns the fluxes
+/// through interfaces.
+pub(super) fn replace<const D: usize>(
+    maker: &Maker<'_, D>,
+    rows: &mut [Row],
+) -> Result<Vec<InterfaceFlux>, MethodError> {
     let mut wanted = vec![false; maker.problem.cloud.len()];
     for row in rows.iter() {
         wanted[row.node] = match maker.params.conservation {
@@ -37,22 +44,66 @@ pub(super) fn replace<const D: usize>(maker: &Maker<'_, D>, rows: &mut [Row]) ->
         };
     }
     // In time a row has a mass that belongs to its collocation.
-    if D != 2 || maker.rates.is_some() || !wanted.contains(&true) {
-        return Ok(0);
+    if D == 1 || maker.rates.is_some() || !wanted.contains(&true) {
+        return Ok(Vec::new());
     }
     let faces = Faces::find(maker, &wanted)?;
     let fluxes = parallel::try_map_with(faces.all.len(), Scratch::default, |scratch, k| {
         maker.flux(&faces.all[k], scratch)
     })?;
     let made = parallel::map(rows.len(), |k| balance(maker, &rows[k], &faces, &fluxes));
-    let mut count = 0;
     for (row, made) in rows.iter_mut().zip(made) {
         if let Some(made) = made {
             *row = made;
-            count += 1;
         }
     }
-    Ok(count)
+    Ok(if is_singular(maker) { through_interfaces(maker, &faces, &fluxes) } else { Vec::new() })
+}
+
+/// Whether slopes may be infinite where no functions of the method follow them.
+fn is_singular<const D: usize>(maker: &Maker<'_, D>) -> bool {
+    let is_open = |corner: &Corner| corner.obstacle.is_some();
+    match D {
+        3 => corners(&CornerData::from(maker.problem), maker.params.order).iter().any(is_open),
+        _ => maker.vertices.corners.iter().any(is_open),
+    }
+}
+
+/// The flux through the interface of every two regions, where the fluxes of all of its faces are known.
+fn through_interfaces<const D: usize>(
+    maker: &Maker<'_, D>,
+    faces: &Faces<D>,
+    fluxes: &[Option<Flux>],
+) -> Vec<InterfaceFlux> {
+    #[derive(Default)]
+    struct Sum {
+        area: f64,
+        values: BTreeMap<u32, f64>,
+        constants: BTreeMap<u32, f64>,
+        known: [f64; 2],
+    }
+    let mut sums: BTreeMap<[u16; 2], Sum> = BTreeMap::new();
+    for (face, flux) in faces.all.iter().zip(fluxes) {
+        let Beyond::Node(other) = face.beyond else { continue };
+        let [first, second] = [face.node, other].map(|j| maker.problem.labels[j as usize]);
+        let Some(flux) = flux.as_ref().filter(|_| first != second) else { continue };
+        let sign = if first < second { 1.0 } else { -1.0 };
+        let sum = sums.entry([first.min(second), first.max(second)]).or_default();
+        sum.area += face.area;
+        flux.values.iter().for_each(|(j, factor)| *sum.values.entry(*j).or_default() += sign * factor);
+        flux.constants.iter().for_each(|(c, factor)| *sum.constants.entry(*c).or_default() += sign * factor);
+        for side in [0, 1] {
+            sum.known[if first < second { side } else { 1 - side }] += sign * flux.known[side];
+        }
+    }
+    let flux = |(between, sum): ([u16; 2], Sum)| InterfaceFlux {
+        between,
+        area: sum.area,
+        values: sum.values.into_iter().collect(),
+        constants: sum.constants.into_iter().collect(),
+        known: sum.known,
+    };
+    sums.into_iter().map(flux).collect()
 }
 
 /// The balance over the cell of a node; `None` where there is none.

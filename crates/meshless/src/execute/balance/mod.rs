@@ -2,7 +2,8 @@
 //! all that is left over. An exact solution leaves nothing; so what is left over is an error, whatever an estimate says.
 //!
 //! Fluxes are integrals over the surfaces by Gauss points. Where a condition says what the flux is, that is it; where u is
-//! prescribed, and at interfaces, it is that of the method's own polynomials, or of a fit to the nodes of one region.
+//! prescribed, and at interfaces, it is that of the method's own polynomials, or of a fit to the nodes of one region; through interfaces with
+//! edges, at which slopes are infinite, that of the method's own balances.
 
 mod content;
 mod pieces;
@@ -11,7 +12,7 @@ mod surfaces;
 use std::collections::BTreeMap;
 
 use meshless_interfaces::gfdm::{CellFlows, Selection};
-use meshless_interfaces::{Condition, Problem, Sample, Sampler, SystemSolution};
+use meshless_interfaces::{Condition, InterfaceFlow, Problem, Sample, Sampler, SystemSolution};
 
 use super::samples::{by_fits, samples};
 use super::{Boundary, Solved};
@@ -27,6 +28,9 @@ const OTHER_DEGREE: usize = 3;
 
 /// Part of a flux by which the quadrature may be off: fluxes at interfaces are taken a little beside them.
 const QUADRATURE: [f64; 3] = [1e-8, 1e-8, 1e-4];
+
+/// How far the area of an interface may be off, as a share, where its flux is taken from a method's own balances.
+const SAME_AREA: f64 = 1e-4;
 
 /// Round-off of a slope, over the size of u and the distance of nodes.
 const ROUND_OFF: f64 = 1e-12;
@@ -117,7 +121,7 @@ impl<const D: usize> Ledger<D> {
             return Ok(self.of_cells(problem, system, &cells));
         }
         let found = samples(method, problem, system, &self.places())?;
-        Ok(self.summed(problem, &system.u, &found))
+        Ok(self.summed(problem, (&system.u, &system.interface_flows), &found))
     }
 
     /// The same in another way, for a solution of which nodal values are all that is known; `None` for others.
@@ -132,7 +136,7 @@ impl<const D: usize> Ledger<D> {
             return Ok(None);
         }
         let found = by_fits(&Sampler::of_degree(problem, &system.u, OTHER_DEGREE)?, &self.places())?;
-        Ok(Some(self.summed(problem, &system.u, &found)))
+        Ok(Some(self.summed(problem, (&system.u, &[]), &found)))
     }
 
     /// Where the solution must be known: where no condition says what the flux is.
@@ -141,7 +145,12 @@ impl<const D: usize> Ledger<D> {
         walls.chain(self.surfaces.seams.iter().map(|seam| seam.from)).collect()
     }
 
-    fn summed(&self, problem: &Problem<'_, D>, u: &[f64], samples: &[Option<Sample<D>>]) -> Flows {
+    fn summed(
+        &self,
+        problem: &Problem<'_, D>,
+        (u, through): (&[f64], &[InterfaceFlow]),
+        samples: &[Option<Sample<D>>],
+    ) -> Flows {
         let mut flows = self.nothing();
         let largest = u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let round_off = ROUND_OFF * largest / self.spacing;
@@ -160,6 +169,7 @@ impl<const D: usize> Ledger<D> {
                 flow.round_off += if sample.is_some() { area * eta * round_off } else { 0.0 };
             }
         }
+        let known = self.whole_interfaces(through);
         for seam in &self.surfaces.seams {
             let Some(sample) = samples.next().copied().flatten() else { continue };
             let eta = problem.materials[sample.region as usize].diffusivity.at(&seam.from);
@@ -167,17 +177,36 @@ impl<const D: usize> Ledger<D> {
             let soft = area * eta * dot(&sample.gradient, &seam.element.normal);
             let jump = area * seam.jump;
             let sides = if seam.soft == 0 { [soft, soft + jump] } else { [soft - jump, soft] };
+            let is_known = known.iter().any(|known| known.between == seam.between);
             for (k, sign) in [(0, 1.0), (1, -1.0)] {
                 let flow = &mut flows.regions[seam.between[k] as usize];
-                flow.seams += sign * sides[k];
+                flow.seams += if is_known { 0.0 } else { sign * sides[k] };
                 flow.size += sides[k].abs();
                 flow.round_off += area * eta * round_off;
             }
             flows.whole.jumps -= jump;
             flows.whole.size += jump.abs();
-            self.add_to_interface(&mut flows, seam.between, soft, area);
+            self.add_to_interface(&mut flows, seam.between, if is_known { 0.0 } else { soft }, area);
+        }
+        for InterfaceFlow { between, sides, .. } in known {
+            let soft =
+                self.surfaces.seams.iter().find(|seam| seam.between == between).map_or(0, |seam| seam.soft);
+            for (k, sign) in [(0, 1.0), (1, -1.0)] {
+                flows.regions[between[k] as usize].seams += sign * sides[k];
+            }
+            self.add_to_interface(&mut flows, between, sides[soft], 0.0);
         }
         flows
+    }
+
+    /// Fluxes through interfaces that a method has as a whole: those of all of an interface.
+    fn whole_interfaces(&self, flows: &[InterfaceFlow]) -> Vec<InterfaceFlow> {
+        let area = |between: [u16; 2]| -> f64 {
+            let seams = self.surfaces.seams.iter().filter(|seam| seam.between == between);
+            seams.map(|seam| seam.element.area).sum()
+        };
+        let is_whole = |flow: &&InterfaceFlow| (flow.area / area(flow.between) - 1.0).abs() <= SAME_AREA;
+        flows.iter().filter(is_whole).copied().collect()
     }
 
     fn nothing(&self) -> Flows {

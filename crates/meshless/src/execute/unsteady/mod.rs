@@ -141,6 +141,7 @@ impl<const D: usize> Run<'_, D> {
             up_to_constant: false,
             split,
             rates: Some(state.slope),
+            interface_flows: Vec::new(),
         };
         Ok(Solved { discrete, discretization, system, seconds, history: Some(History { report, frames }) })
     }

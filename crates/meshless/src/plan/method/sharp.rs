@@ -29,7 +29,7 @@ fn conservation(scene: &Scene) -> Conservation {
 }
 
 fn has_balances(scene: &Scene) -> bool {
-    scene.dimension == 2 && scene.time.is_none()
+    scene.dimension > 1 && scene.time.is_none()
 }
 
 /// Microseconds of a stencil beside its factorisation, and those of a thousand multiplications of that: about, on one core.
