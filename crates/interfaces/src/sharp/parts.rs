@@ -4,7 +4,7 @@ use super::adapted;
 use super::basis::{Basis, Jet};
 use super::dense;
 use super::maker::Maker;
-use super::params::Form;
+use super::params::{Conservation, Form};
 use super::stencil::Stencil;
 use super::vertex::{self, Valued};
 use crate::{Field, Material};
@@ -111,10 +111,11 @@ fn is_softer<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: 
 /// Where a soft part holds a source, its values are of the size `f / eta`, and what a polynomial misses of them would be weighed against
 /// the values of the stiff part. A stiff part wants nothing of a soft one but its flux. So a target in a stiff part sees the values
 /// of softer ones in units of the flux, and one in a soft part sees those of stiffer ones as they are. In time, rows choose what they hear
-/// by themselves ([`Heard`](super::stencil::Heard)). In space, where no balance closes what such fits leave, all parts are seen as they
-/// are: a ball of contrast 100 would have four times the error.
+/// by themselves ([`Heard`](super::stencil::Heard)). In space without balances, which close what such fits leave, all parts are seen as
+/// they are: a ball of contrast 100 would have four times the error.
 fn omega<const D: usize>(maker: &Maker<'_, D>, stencil: &Stencil<D>, place: usize) -> f64 {
-    if place == 0 || D == 3 || maker.rates.is_some() {
+    let unbalanced = D == 3 && maker.params.conservation == Conservation::None;
+    if place == 0 || unbalanced || maker.rates.is_some() {
         return 1.0;
     }
     // The diffusivity may vary in a part: that at its node nearest to the center stands for it.

@@ -5,6 +5,7 @@ use meshless_interfaces::{Corner, CornerData, Discretization, Obstacle, Problem,
 use super::honest::Reason;
 use crate::plan::Plan;
 use crate::report::CornerReport;
+use crate::scene::Scene;
 
 /// Exponents are as many times their distance from the next whole number as weak as one half way between two: where a curve is
 /// given by a polygon of many sides, each corner is almost none.
@@ -35,8 +36,8 @@ pub(super) fn report(corners: &[Corner]) -> Vec<CornerReport> {
 
 /// The relative error that the corners leave which the method does not serve, about: `(h / L)^(2 lambda)`, the rate of every method
 /// that fits polynomials there (Strang and Fix, "An analysis of the finite element method", 1973, chapter 8), with the spacing h at
-/// the corner and the distance L of the next one.
-pub(super) fn reason<const D: usize>(problem: &Problem<'_, D>, corners: &[Corner]) -> Reason {
+/// the corner, and the distance L of the next one. Corners spoil the regions around them as much as the whole.
+pub(super) fn reason<const D: usize>(scene: &Scene, problem: &Problem<'_, D>, corners: &[Corner]) -> Reason {
     let points = problem.cloud.points();
     let of_corner = |corner: &Corner| {
         let squared = |i: usize| (0..D).map(|k| (points[i][k] - corner.at[k]).powi(2)).sum::<f64>();
@@ -50,5 +51,7 @@ pub(super) fn reason<const D: usize>(problem: &Problem<'_, D>, corners: &[Corner
         Some(strength * ratio.powf(rate))
     };
     let left = corners.iter().filter(|corner| corner.obstacle.is_some()).filter_map(of_corner);
-    Reason { by: "corners", whole: left.reduce(f64::max), regions: Vec::new() }
+    let whole = left.reduce(f64::max);
+    let regions = scene.regions.iter().filter_map(|region| Some((region.name.clone(), whole?)));
+    Reason { by: "corners", whole, regions: regions.collect() }
 }

@@ -266,7 +266,7 @@ fn execute_in<const D: usize>(
         let reasons = [honest::by_balance(scene, ledger, flows, other.as_ref(), &estimate)];
         honest::raise(&mut estimate, &reasons);
     }
-    honest::raise(&mut estimate, &[corners::reason(&problem, &corners)]);
+    honest::raise(&mut estimate, &[corners::reason(scene, &problem, &corners)]);
     seconds.balance += before.elapsed().as_secs_f64();
     let before = Instant::now();
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, plan, &solved)).transpose()?;

@@ -9,6 +9,9 @@ use crate::{Condition, MethodError};
 /// What is left of the reproduction of a flux before it counts as not determined, over what it is made of.
 const REPRODUCTION: f64 = 1e-6;
 
+/// Relative difference of diffusivities in units of their parts up to which they are alike.
+const ALIKE: f64 = 1e-3;
+
 /// `int eta du/dn` over a face, n out of the cell of its first node, in terms of the unknowns.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Flux {
@@ -44,6 +47,16 @@ impl<const D: usize> Maker<'_, D> {
         self.problem.eta[j as usize] * self.unknowns.scale[self.unknowns.part[j as usize] as usize]
     }
 
+    /// Which of the nodes on either side of an interface is in the softer part. Where both floating ones and what is round them are scaled alike,
+    /// in space it is what conducts less that is told by its polynomial.
+    fn softer(&self, nodes: [u32; 2]) -> usize {
+        let [first, second] = nodes.map(|j| self.conductivity(j));
+        let is_alike = D == 3 && (first / second - 1.0).abs() < ALIKE;
+        let [first, second] =
+            if is_alike { nodes.map(|j| self.problem.eta[j as usize]) } else { [first, second] };
+        usize::from(second < first)
+    }
+
     /// The flux of a face; `None` where no fit determines it.
     pub(super) fn flux(&self, face: &Face<D>, scratch: &mut Scratch<D>) -> Result<Option<Flux>, MethodError> {
         match face.beyond {
@@ -70,17 +83,10 @@ impl<const D: usize> Maker<'_, D> {
         if !crosses && parts[0] != parts[1] {
             return None;
         }
-        let softer = usize::from(crosses && self.conductivity(nodes[1]) < self.conductivity(nodes[0]));
+        let softer = if crosses { self.softer(nodes) } else { 0 };
         self.factor_at((&face.middle, parts[softer], Heard::All), scratch, |_| true)?;
         let points = self.problem.cloud.points();
-        let distance = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
-        let [x, y] = nodes.map(|j| &points[j as usize]);
-        let ways = match crosses {
-            true => [distance(x, &face.middle), distance(y, &face.middle)],
-            false => [0.5 * distance(x, y); 2],
-        };
-        let eta = nodes.map(|j| self.problem.eta[j as usize]);
-        let conductance = face.area / (ways[0] / eta[0] + ways[1] / eta[1]);
+        let conductance = self.conductance(face, other);
         let mut wanted = self.gradients(face, labels[softer], scratch);
         let Scratch { stencil, .. } = scratch;
         // Functions of a vertex may not reach both nodes: then there is nothing that their values could miss.
@@ -111,6 +117,20 @@ impl<const D: usize> Maker<'_, D> {
             flux.known[1 - softer] += if softer == 0 { jump } else { -jump };
         }
         Some(flux)
+    }
+
+    /// `|f| / (d_i / eta_i + d_j / eta_j)`: what a difference of 1 between two nodes drives through their face.
+    fn conductance(&self, face: &Face<D>, other: u32) -> f64 {
+        let nodes = [face.node, other].map(|j| j as usize);
+        let points = self.problem.cloud.points();
+        let distance = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        let [x, y] = nodes.map(|j| &points[j]);
+        let ways = match self.problem.labels[nodes[0]] != self.problem.labels[nodes[1]] {
+            true => [distance(x, &face.middle), distance(y, &face.middle)],
+            false => [0.5 * distance(x, y); 2],
+        };
+        let eta = nodes.map(|j| self.problem.eta[j]);
+        face.area / (ways[0] / eta[0] + ways[1] / eta[1])
     }
 
     /// What a boundary lets through: what is prescribed, or where the value is, the gradient of the fit.

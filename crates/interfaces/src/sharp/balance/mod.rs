@@ -17,7 +17,7 @@ use meshless_geometry::gauss;
 
 use super::maker::{Maker, Row, Scratch};
 use super::params::Conservation;
-use crate::corners::{Corner, CornerData, corners};
+use crate::corners::{CornerData, corners};
 use crate::{InterfaceFlux, MethodError, parallel};
 use faces::{Beyond, Face, Faces};
 use flux::Flux;
@@ -57,16 +57,13 @@ pub(super) fn replace<const D: usize>(
             *row = made;
         }
     }
-    Ok(if is_singular(maker) { through_interfaces(maker, &faces, &fluxes) } else { Vec::new() })
+    Ok(if has_edges(maker) { through_interfaces(maker, &faces, &fluxes) } else { Vec::new() })
 }
 
-/// Whether slopes may be infinite where no functions of the method follow them.
-fn is_singular<const D: usize>(maker: &Maker<'_, D>) -> bool {
-    let is_open = |corner: &Corner| corner.obstacle.is_some();
-    match D {
-        3 => corners(&CornerData::from(maker.problem), maker.params.order).iter().any(is_open),
-        _ => maker.vertices.corners.iter().any(is_open),
-    }
+/// Whether slopes are infinite at edges in space, along which their integrals find no size. In the plane those stay: beside a vertex without
+/// functions what they leave over says how far the solution is off.
+fn has_edges<const D: usize>(maker: &Maker<'_, D>) -> bool {
+    D == 3 && !corners(&CornerData::from(maker.problem), maker.params.order).is_empty()
 }
 
 /// The flux through the interface of every two regions, where the fluxes of all of its faces are known.
