@@ -80,10 +80,12 @@ mod tests {
         for figure in table() {
             let values = of(figure.case, figure.parameter).filter(|f| f.quantity != Quantity::Rms).count();
             assert!(values > 0, "{}: nothing to compare with", figure.case);
-            // Mean squares are integrals over the singularities themselves; what a standard allows is a hundredth.
+            // Mean squares are integrals over the singularities themselves; what a standard allows is a hundredth. In space meshes towards edges
+            // grow fast, and solutions are compared that are off by percents.
             let limit = match figure.quantity {
                 Quantity::Rms => 1e-3,
                 _ if figure.case == "iso-10211-4" => 1.01e-2,
+                _ if figure.at.len() == 3 => 5e-4,
                 _ => 1e-5,
             };
             assert!(

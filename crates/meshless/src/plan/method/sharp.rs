@@ -17,7 +17,7 @@ pub(super) fn params(scene: &Scene) -> SharpParams {
     }
 }
 
-/// Cells by region are made in the plane, and balances of what is steady.
+/// Cells by region are made in the plane and in space, and balances of what is steady.
 fn conservation(scene: &Scene) -> Conservation {
     match scene.method.options.conservation {
         _ if !has_balances(scene) => Conservation::None,
@@ -87,7 +87,8 @@ pub(super) fn check(scene: &Scene) -> Result<(), Error> {
     }
     let asked = scene.method.options.conservation.filter(|name| *name != ConservationName::None);
     if asked.is_some() && !has_balances(scene) {
-        let message = "the method \"sharp\" has balances in steady scenes in the plane only".to_owned();
+        let message =
+            "the method \"sharp\" has balances in steady scenes in the plane and in space only".to_owned();
         let error = scene.error_at_boundaries(message, "remove the key `conservation`".to_owned());
         return Err(error.into());
     }
