@@ -3,6 +3,7 @@
 use meshless::plan::Plan;
 use meshless::report::Report;
 use meshless::scene::{MethodName, Scene};
+use meshless::{Silent, execute};
 use meshless_tests::solve::solve_scene;
 
 fn scene(text: &str) -> Scene {
@@ -423,7 +424,9 @@ at = [0.1, 0.05, 0.2]
 fluxes = true
 "#
         );
-        let report = with(&text, MethodName::Sharp);
+        let scene = scene(&text);
+        let plan = Plan::new(&scene).expect("a plan");
+        let report = execute(&scene, &plan, &mut Silent).expect("the scene can be solved").report;
         let balance = report.balance.as_ref().expect("every report has a balance");
         assert!((balance.into[0].flux + 5.12).abs() < 1e-2, "eta {eta}: {balance:?}");
         let through = &report.fluxes.as_ref().expect("fluxes were asked for").interfaces[0];

@@ -18,8 +18,8 @@ const OTHERS: f64 = 2.01;
 /// Distances to level sets are known to this factor.
 const LEVELS: f64 = 2.0;
 
-/// Points of rules for what is no polynomial, beyond those for what is.
-const CURVED: usize = 1;
+/// Points of rules for what is no polynomial, beyond those for what is: to round-off where a spacing is half a radius.
+const CURVED: usize = 3;
 
 /// What a surface is part of.
 #[derive(Debug, Clone, Copy, PartialEq)]
