@@ -210,26 +210,7 @@ fn corners_that_nothing_serves_are_named_and_raise_the_estimate() {
     let least = (0.1_f64 / 0.6).powf(2.0 * 0.731_691_8) * 2.0 * (1.0 - 0.731_691_8);
     assert!(found.estimate.l2.is_some_and(|estimate| estimate >= 0.999 * least));
     // Edges in space.
-    let cube = r#"
-title = "Corner"
-dimension = 3
-[domain]
-box = { min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }
-[points]
-spacing = 0.25
-[[regions]]
-name = "cube"
-box = { min = [-0.4, -0.4, -0.4], max = [0.4, 0.4, 0.4] }
-diffusivity = 10
-source = 10
-[[regions]]
-name = "out"
-diffusivity = 1
-[[boundaries]]
-face = "all"
-dirichlet = 0
-"#;
-    let found = report(cube);
+    let found = report(&meshless_tests::natural::desk::heated_cube(10.0, 0.25, 1));
     assert_eq!(found.corners.len(), 12);
     assert!(found.corners.iter().all(|edge| !edge.served && (edge.exponent - 0.731_691_8).abs() < 1e-4));
 }

@@ -4,6 +4,8 @@ use meshless::plan::Plan;
 use meshless::report::Report;
 use meshless::scene::{MethodName, Scene};
 use meshless::{Silent, execute};
+use meshless_tests::natural::desk;
+use meshless_tests::natural::references::{self, Quantity};
 use meshless_tests::solve::solve_scene;
 
 fn scene(text: &str) -> Scene {
@@ -395,78 +397,39 @@ dirichlet = "x"
     assert!(message.to_string().contains("falls to zero at about [0.3000"), "{message}");
 }
 
-/// 5.12 is made in a cube; with collocation 1.57 of it left the box, with a diffusivity of 1e4 12.5. u in the cube is by hp-FEM
-/// (tests/references/natural.csv): edges in space have no functions of their own, so that it is coarse, and the estimate has to say so.
+/// Solves a scene with its estimate.
+fn estimated(text: &str) -> Report {
+    let scene = Scene::parse(text, "natural.toml").expect("the scene is right");
+    let plan = Plan::new(&scene).expect("a plan");
+    execute(&scene, &plan, &mut Silent).expect("the scene can be solved").report
+}
+
+/// 5.12 is made in a cube; with collocation 1.57 of it left the box, with a diffusivity of 1e4 12.5. u is that of hp-FEM: edges in space have no
+/// functions of their own, so that it is coarse, and the estimate has to say so.
 #[test]
 fn heat_that_is_made_in_a_cube_leaves_it() {
-    for (eta, inside) in [("10", 0.465_187_839), ("1e4", 0.418_021_084)] {
-        let text = format!(
-            r#"
-dimension = 3
-[domain]
-box = {{ min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }}
-[points]
-spacing = 0.2
-[[regions]]
-name = "cube"
-box = {{ min = [-0.4, -0.4, -0.4], max = [0.4, 0.4, 0.4] }}
-diffusivity = {eta}
-source = 10
-[[regions]]
-name = "out"
-diffusivity = 1
-[[boundaries]]
-face = "all"
-dirichlet = 0
-[[probes]]
-at = [0.1, 0.05, 0.2]
-[output]
-fluxes = true
-"#
-        );
-        let scene = scene(&text);
-        let plan = Plan::new(&scene).expect("a plan");
-        let report = execute(&scene, &plan, &mut Silent).expect("the scene can be solved").report;
+    for eta in [10.0, 1e4] {
+        let report = estimated(&desk::heated_cube(eta, 0.2, 1));
         let balance = report.balance.as_ref().expect("every report has a balance");
-        assert!((balance.into[0].flux + 5.12).abs() < 1e-2, "eta {eta}: {balance:?}");
-        let through = &report.fluxes.as_ref().expect("fluxes were asked for").interfaces[0];
-        assert!((through.flux.abs() - 5.12).abs() < 1e-2, "eta {eta}: {through:?}");
-        let error = (probes(&report)[0] / inside - 1.0).abs();
+        let through = balance.regions["part"].interfaces;
+        for flux in [balance.into[0].flux, through] {
+            assert!((flux + 5.12).abs() < 1e-2, "eta {eta}: {flux}");
+        }
         let estimate = report.estimate.l2.expect("an estimate");
-        assert!(error < 0.2 && error < estimate, "eta {eta}: {error} for {estimate}");
+        let figures = references::of("heated-cube", eta).filter(|figure| figure.quantity == Quantity::Value);
+        for (figure, value) in figures.zip(probes(&report)) {
+            let error = (value / figure.value - 1.0).abs();
+            assert!(error < 0.2 && error < estimate, "eta {eta}, {figure:?}: {value}, estimate {estimate}");
+        }
     }
 }
 
-/// Spheres in a cubic array, where cells have curved faces: the effective conductivity by multipole expansions is 1.887740058.
+/// A cubic array of spheres, where cells have curved faces: the flux is a quarter of the effective conductivity, 1.887740058 by multipoles.
 #[test]
 fn balances_at_curved_interfaces_in_space() {
-    let text = r#"
-dimension = 3
-[domain]
-box = { min = [0.0, 0.0, 0.0], max = [0.5, 0.5, 0.5] }
-[points]
-spacing = 0.06
-[[regions]]
-name = "sphere"
-sphere = { center = [0.0, 0.0, 0.0], radius = 0.41528306 }
-diffusivity = 10
-[[regions]]
-name = "matrix"
-diffusivity = 1
-[[boundaries]]
-face = "left"
-dirichlet = 0
-[[boundaries]]
-face = "right"
-dirichlet = 0.5
-[[boundaries]]
-face = "all"
-neumann = 0
-"#;
-    let report = with(text, MethodName::Sharp);
+    let report = estimated(&desk::spheres(0.3, 0.06, 1));
     assert!(report.nodes.conservative > 300, "{:?}", report.nodes);
     for side in &report.balance.as_ref().expect("every report has a balance").into[..2] {
-        // A field of 1 through a quarter of a cell's face.
         let effective = side.flux.abs() / 0.25;
         assert!((effective / 1.887_740_058 - 1.0).abs() < 4e-3, "{effective}");
     }

@@ -104,8 +104,7 @@ fn jumps_of_the_flux_may_differ_from_side_to_side() {
         flux_jump = \"if(abs(z - 0.5) - 0.25 > sqrt((x - 0.5)^2 + (y - 0.5)^2) - 0.27, if(z < 0.5, 4, -4), -2*(x - 0.5)/0.27)\"\n\
         [[boundaries]]\nface = \"all\"\ndirichlet = \"x + 2*z\"\n";
     let [l2, ..] = errors(cylinder, 4);
-    // Balances integrate over curved faces, here of a radius of two spacings, by a quadrature: 3e-10.
-    assert!(l2 < 1e-9, "{l2}");
+    assert!(l2 < 1e-11, "{l2}");
 }
 
 /// Data that say on which side of a corner they are by the position, for a face of several sides and for all faces at once.

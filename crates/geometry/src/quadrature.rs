@@ -64,9 +64,15 @@ mod tests {
 
     #[test]
     fn powers_are_integrated_towards_corners() {
-        for (power, error) in [(-0.5, 1e-14), (-0.45, 1e-8), (-1.0 / 3.0, 1e-14), (0.2, 1e-12), (4.0, 1e-14)]
-        {
-            let sum: f64 = gauss_from_corner(16).iter().map(|(x, w)| w * x.powf(power)).sum();
+        // Where six times the exponent is not whole the error falls with the number of points: 3e-9 with 16 at -0.45.
+        for (power, points, error) in [
+            (-0.5, 16, 1e-14),
+            (-0.45, 24, 1e-9),
+            (-1.0 / 3.0, 16, 1e-14),
+            (0.2, 16, 1e-12),
+            (4.0, 16, 1e-14),
+        ] {
+            let sum: f64 = gauss_from_corner(points).iter().map(|(x, w)| w * x.powf(power)).sum();
             assert!((sum * (power + 1.0) - 1.0).abs() < error, "{power}: {sum}");
         }
     }

@@ -3,6 +3,7 @@
 //! Interfaces and boundaries are cut where the nearest node on either side changes, so that every piece is a face of one cell, or of
 //! two. A cell is used only if its faces close it: what a cell misses of its surface, its balance would miss of the flux.
 
+use meshless_cells::{Cell, CellScratch, Container, box_planes, voronoi_cell};
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
@@ -11,7 +12,10 @@ use crate::sharp::maker::Maker;
 use crate::{MethodError, Problem};
 
 /// Half the width of the box that a cell is looked for in, in spacings: no part of a region is farther from its nearest node.
-pub(super) const HALF_WIDTH: f64 = 2.5;
+const HALF_WIDTH: f64 = 2.5;
+
+/// How much farther than round-off would have it nodes are searched for.
+const SEARCH_MARGIN: f64 = 1.01;
 
 /// How far beside an interface it is asked what is there, in spacings: beyond round-off of coordinates, and far less than a cell has
 /// to be closed by.
@@ -87,6 +91,34 @@ impl<const N: usize> OfRegion<N> {
         let widest = problem.cloud.spacing().iter().fold(0.0_f64, |a, &b| a.max(b));
         all.iter().map(|region| Ok(CellList::new(&region.places, 3.0 * widest)?)).collect()
     }
+}
+
+/// The Voronoi cell of a node among those of its region, within a box about it and the bounds of the domain; `place` gives a point the
+/// dimension that cells are made in. `None` where the node is not in the region that it is said to be of, and where there is no cell.
+pub(super) fn cell_of<const D: usize, const N: usize>(
+    (problem, i): (&Problem<'_, D>, usize),
+    (region, list): (&OfRegion<N>, &CellList<'_, N>),
+    place: impl Fn(&[f64; D]) -> [f64; N],
+    scratch: &mut CellScratch,
+) -> Option<Cell<N>> {
+    let (at, spacing) = (&problem.cloud.points()[i], problem.cloud.spacing()[i]);
+    if problem.regions.label(at, spacing) != problem.labels[i] {
+        return None;
+    }
+    let (x, bounds, reach) = (place(at), problem.domain.bounds(), HALF_WIDTH * spacing);
+    let (least, most) = (place(&bounds.min), place(&bounds.max));
+    let min: [f64; N] = std::array::from_fn(|k| least[k].max(x[k] - reach));
+    let max: [f64; N] = std::array::from_fn(|k| most[k].min(x[k] + reach));
+    let mut found = Vec::new();
+    list.within(&x, 2.0 * reach * (N as f64).sqrt() * SEARCH_MARGIN, &mut found);
+    let candidates: Vec<(u32, [f64; N])> = found
+        .iter()
+        .map(|&place| (region.nodes[place as usize], region.places[place as usize]))
+        .filter(|(j, _)| *j as usize != i)
+        .collect();
+    let planes = box_planes(&min, &max);
+    let container = Container { min, max, planes: &planes, cuts: &[] };
+    voronoi_cell(&x, &candidates, f64::INFINITY, &container, scratch).ok()
 }
 
 /// What the faces of all cells are put together from.

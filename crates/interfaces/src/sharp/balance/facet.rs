@@ -186,9 +186,21 @@ impl<'a> Facet<'a> {
         &self.vertices[(k + 1) % self.vertices.len()]
     }
 
-    /// Whether the polygon or an edge is curved.
-    pub(super) fn is_curved(&self) -> bool {
-        !self.is_straight()
+    /// The angle by which the polygon turns, or what its edges are on, the largest: zero where all is flat. A little less for large angles.
+    pub(super) fn turn(&self) -> Option<f64> {
+        let between = |surface: &Surface<'_>, a: &[f64; 3], b: &[f64; 3]| {
+            length(&minus(&surface.normal(a), &surface.normal(b)))
+        };
+        let mut turn = 0.0_f64;
+        if !self.surface.is_plane() {
+            let middle = self.middle()?;
+            let away = self.vertices.iter().map(|x| between(&self.surface, &middle, x));
+            turn = 2.0 * away.fold(0.0, f64::max);
+        }
+        for (k, edge) in self.edges.iter().enumerate().filter(|(_, edge)| !edge.is_plane()) {
+            turn = turn.max(between(edge, &self.vertices[k], self.next(k)));
+        }
+        Some(turn)
     }
 
     /// Whether all vertices are on a surface.

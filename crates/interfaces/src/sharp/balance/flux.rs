@@ -142,7 +142,9 @@ impl<const D: usize> Maker<'_, D> {
     ) -> Option<Flux> {
         let node = face.node as usize;
         let (label, part) = (self.problem.labels[node], self.unknowns.part[node]);
-        let prescribed = matches!(conditions.first(), Some(Condition::Dirichlet(_)));
+        // A face on which only a part of u is prescribed has no flux from here: its cell keeps the collocated row.
+        let prescribed =
+            !conditions.is_empty() && conditions.iter().all(|c| matches!(c, Condition::Dirichlet(_)));
         let field = &self.problem.materials[label as usize].diffusivity;
         let (mut known, mut exchanges) = (0.0, Vec::new());
         if !prescribed {

@@ -1,11 +1,11 @@
 //! Cells by region in the plane.
 
-use meshless_cells::{CellScratch, Container, FaceKind, box_planes, voronoi_cell};
+use meshless_cells::{CellScratch, FaceKind};
 use meshless_geometry::{Aabb, FaceId, Shape, gauss, gauss_from_corner};
 use meshless_neighbors::CellList;
 
 use super::curve::{Curve, Level, Piece, curves, trace};
-use super::faces::{BESIDE, Beyond, FARTHEST_POINT, Face, FacePoint, HALF_WIDTH, OfRegion, Pieces};
+use super::faces::{BESIDE, Beyond, FARTHEST_POINT, Face, FacePoint, OfRegion, Pieces, cell_of};
 use crate::sharp::maker::Maker;
 use crate::{Condition, MethodError, Problem, parallel};
 
@@ -125,25 +125,8 @@ impl<const D: usize> Geometry<'_, '_, D> {
         let label = self.problem.labels[i];
         let x = flat(&self.problem.cloud.points()[i]);
         let spacing = self.problem.cloud.spacing()[i];
-        if self.problem.regions.label(&self.problem.cloud.points()[i], spacing) != label {
-            return None;
-        }
-        let bounds = self.problem.domain.bounds();
-        let reach = HALF_WIDTH * spacing;
-        let min: [f64; 2] = std::array::from_fn(|k| bounds.min[k].max(x[k] - reach));
-        let max: [f64; 2] = std::array::from_fn(|k| bounds.max[k].min(x[k] + reach));
-        let searched = 2.0 * reach * f64::sqrt(2.0) * 1.01;
-        let region = &self.regions[label as usize];
-        let mut found = Vec::new();
-        self.lists[label as usize].within(&x, searched, &mut found);
-        let candidates: Vec<(u32, [f64; 2])> = found
-            .iter()
-            .map(|&place| (region.nodes[place as usize], region.places[place as usize]))
-            .filter(|(j, _)| *j as usize != i)
-            .collect();
-        let planes = box_planes(&min, &max);
-        let container = Container { min, max, planes: &planes, cuts: &[] };
-        let cell = voronoi_cell(&x, &candidates, f64::INFINITY, &container, scratch).ok()?;
+        let own = (&self.regions[label as usize], &self.lists[label as usize]);
+        let cell = cell_of((self.problem, i), own, flat, scratch)?;
         let reach = 0.5 * cell.reach + FARTHEST_POINT * spacing;
         let is_whole =
             self.problem.domain.outer_box().is_some() && !self.maker.has_interface_within(&wide(&x), reach);

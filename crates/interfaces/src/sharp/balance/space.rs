@@ -1,10 +1,10 @@
 //! Cells by region in space.
 
-use meshless_cells::{Cell, CellScratch, Container, FaceKind, box_planes, voronoi_cell};
+use meshless_cells::{Cell, CellScratch, FaceKind};
 use meshless_geometry::{Aabb, FaceId, Shape, gauss};
 use meshless_neighbors::CellList;
 
-use super::faces::{BESIDE, Beyond, FARTHEST_POINT, Face, FacePoint, HALF_WIDTH, OfRegion, Pieces};
+use super::faces::{BESIDE, Beyond, FARTHEST_POINT, Face, FacePoint, OfRegion, Pieces, cell_of};
 use super::facet::{Facet, Level, Point, Surface};
 use crate::sharp::maker::Maker;
 use crate::{MethodError, Problem, parallel};
@@ -12,14 +12,24 @@ use crate::{MethodError, Problem, parallel};
 /// How much wider than what it is to hold a polygon is before it is cut.
 const MARGIN: f64 = 1.05;
 
+/// How far from an interface a node is that has no face on it, in spacings.
+const FAR: f64 = 4.0;
+
 /// Nodes beyond an interface that may share a face, in sizes of the face beyond the nearest one.
 const OTHERS: f64 = 2.01;
 
 /// Distances to level sets are known to this factor.
 const LEVELS: f64 = 2.0;
 
-/// Points of rules for what is no polynomial, beyond those for what is: to round-off where a spacing is half a radius.
-const CURVED: usize = 3;
+/// Points of rules for what is no polynomial, beyond those for what is: where a diffusivity varies, and at most.
+const VARYING: usize = 3;
+const MOST_POINTS: usize = 8;
+
+/// Each point more makes integrals over faces that turn by an angle more accurate by the square of this, over the angle: measured.
+const GAIN: f64 = 2.3;
+
+/// Half of the logarithm of what the error of a face that turns has to become less by: from 6e-6 to round-off.
+const NEEDED: f64 = 7.8;
 
 /// What a surface is part of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,8 +54,8 @@ struct Geometry<'a, 'b, const D: usize> {
     smooth: Vec<Smooth<'b>>,
     /// Whether a diffusivity is not constant.
     varies: bool,
-    /// Points along edges and across them, for polynomials on flat faces, and for all else.
-    rules: [[Vec<(f64, f64)>; 2]; 2],
+    /// Points along edges and across them: those for polynomials on flat faces, and ever more for what is none.
+    rules: Vec<[Vec<(f64, f64)>; 2]>,
 }
 
 /// The cell of a node: the planes that hold it, and the surfaces that may cut it.
@@ -92,7 +102,7 @@ pub(super) fn pieces<const D: usize>(
     let degree = maker.params.degree();
     // Fluxes are one degree lower, and the area of a triangle grows with the distance from its corner.
     let exact = [degree.div_ceil(2), (degree + 1).div_ceil(2)];
-    let rules = [exact, exact.map(|n| n + CURVED)].map(|rules| rules.map(gauss));
+    let rules = (0..=MOST_POINTS).map(|more| exact.map(|n| gauss(n + more))).collect();
     let varies = problem.materials.iter().any(|material| material.diffusivity.as_constant().is_none());
     let geometry = Geometry { problem, maker, regions: &regions, lists, smooth, varies, rules };
     let found =
@@ -189,11 +199,7 @@ impl<'b, const D: usize> Geometry<'_, 'b, D> {
     fn node(&self, i: usize, wanted: bool, scratch: &mut CellScratch) -> Option<OfNode<D>> {
         let x = &self.problem.cloud.points()[i];
         let spacing = self.problem.cloud.spacing()[i];
-        let reach = (HALF_WIDTH + FARTHEST_POINT) * spacing;
-        if !wanted && !self.maker.has_interface_within(x, reach) {
-            return None;
-        }
-        if self.problem.regions.label(x, spacing) != self.problem.labels[i] {
+        if !wanted && !self.maker.has_interface_within(x, FAR * spacing) {
             return None;
         }
         let own = self.own(i, scratch)?;
@@ -206,23 +212,9 @@ impl<'b, const D: usize> Geometry<'_, 'b, D> {
     }
 
     fn own(&self, i: usize, scratch: &mut CellScratch) -> Option<Own<'b>> {
-        let label = self.problem.labels[i];
+        let label = self.problem.labels[i] as usize;
         let x = solid(&self.problem.cloud.points()[i]);
-        let bounds = solid_box(&self.problem.domain.bounds());
-        let reach = HALF_WIDTH * self.problem.cloud.spacing()[i];
-        let min: [f64; 3] = std::array::from_fn(|k| bounds.min[k].max(x[k] - reach));
-        let max: [f64; 3] = std::array::from_fn(|k| bounds.max[k].min(x[k] + reach));
-        let region = &self.regions[label as usize];
-        let mut found = Vec::new();
-        self.lists[label as usize].within(&x, 2.0 * reach * f64::sqrt(3.0) * 1.01, &mut found);
-        let candidates: Vec<(u32, [f64; 3])> = found
-            .iter()
-            .map(|&place| (region.nodes[place as usize], region.places[place as usize]))
-            .filter(|(j, _)| *j as usize != i)
-            .collect();
-        let planes = box_planes(&min, &max);
-        let container = Container { min, max, planes: &planes, cuts: &[] };
-        let cell = voronoi_cell(&x, &candidates, f64::INFINITY, &container, scratch).ok()?;
+        let cell = cell_of((self.problem, i), (&self.regions[label], &self.lists[label]), solid, scratch)?;
         let walls = cell.faces.iter().map(|face| Surface::through(&face.centroid, face.normal)).collect();
         let radius = 0.5 * cell.reach;
         let is_near = |smooth: &Smooth<'_>| {
@@ -235,7 +227,10 @@ impl<'b, const D: usize> Geometry<'_, 'b, D> {
     }
 
     fn points(&self, facet: &Facet<'_>) -> Option<Vec<Point>> {
-        let [along_edge, across] = &self.rules[usize::from(facet.is_curved() || self.varies)];
+        let turn = facet.turn()?;
+        let curved = if turn > 0.0 { (NEEDED / (GAIN / turn).ln().max(1.0)).ceil() as usize } else { 0 };
+        let more = curved.max(if self.varies { VARYING } else { 0 });
+        let [along_edge, across] = &self.rules[more.min(MOST_POINTS)];
         facet.points([along_edge, across])
     }
 
