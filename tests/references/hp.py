@@ -61,7 +61,7 @@ def mesh_of(problem, layers, factor, degree):
     whole = occ.Glue(shapes)
     pieces = whole.faces if space else whole.edges
     for piece in pieces:
-        piece.name = problem.named(piece.center) or "inside"
+        piece.name = problem.named(piece.center) or "none"
     for vertex in whole.vertices:
         vertex.hpref = 1
     if space and problem.edges:
@@ -110,7 +110,8 @@ def solve(problem, layers, degree, factor, scale=None):
         out[("u", region, point)] = field_(mesh(*point))
     for name in regions:
         part = mesh.Materials(name)
-        square, size = ng.Integrate(field_ * field_, mesh, definedon=part), ng.Integrate(1, mesh, definedon=part)
+        square = ng.Integrate(field_ * field_, mesh, definedon=part, order=2 * degree)
+        size = ng.Integrate(1, mesh, definedon=part)
         out[("rms", name, ())] = math.sqrt(square / size)
     # What enters through a prescribed value is the residual of the equation tested with any extension of 1 from there.
     for name in problem.dirichlet:
@@ -119,7 +120,7 @@ def solve(problem, layers, degree, factor, scale=None):
         flux = ng.LinearForm(eta * ng.grad(field_) * ng.grad(v) * ng.dx - source * v * ng.dx).Assemble()
         out[("flux", name, ())] = flux.vec.InnerProduct(one.vec)
     for name, (h, ambient) in problem.convection.items():
-        out[("flux", name, ())] = ng.Integrate(h * (ambient - field_), mesh, definedon=mesh.Boundaries(name))
+        out[("flux", name, ())] = ng.Integrate(h * (ambient - field_), mesh, definedon=mesh.Boundaries(name), order=2 * degree)
     return out, space.ndof
 
 

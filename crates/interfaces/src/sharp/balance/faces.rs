@@ -3,7 +3,7 @@
 //! Interfaces and boundaries are cut where the nearest node on either side changes, so that every piece is a face of one cell, or of
 //! two. A cell is used only if its faces close it: what a cell misses of its surface, its balance would miss of the flux.
 
-use meshless_cells::{Cell, CellScratch, Container, box_planes, voronoi_cell};
+use meshless_cells::{Cell, CellError, CellScratch, Container, box_planes, voronoi_cell};
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
@@ -13,6 +13,9 @@ use crate::{MethodError, Problem};
 
 /// Half the width of the box that a cell is looked for in, in spacings: no part of a region is farther from its nearest node.
 const HALF_WIDTH: f64 = 2.5;
+
+/// Radius within which a cell is looked for first, in spacings.
+const NEARBY: f64 = 3.0;
 
 /// How much farther than round-off would have it nodes are searched for.
 const SEARCH_MARGIN: f64 = 1.01;
@@ -109,16 +112,24 @@ pub(super) fn cell_of<const D: usize, const N: usize>(
     let (least, most) = (place(&bounds.min), place(&bounds.max));
     let min: [f64; N] = std::array::from_fn(|k| least[k].max(x[k] - reach));
     let max: [f64; N] = std::array::from_fn(|k| most[k].min(x[k] + reach));
-    let mut found = Vec::new();
-    list.within(&x, 2.0 * reach * (N as f64).sqrt() * SEARCH_MARGIN, &mut found);
-    let candidates: Vec<(u32, [f64; N])> = found
-        .iter()
-        .map(|&place| (region.nodes[place as usize], region.places[place as usize]))
-        .filter(|(j, _)| *j as usize != i)
-        .collect();
     let planes = box_planes(&min, &max);
     let container = Container { min, max, planes: &planes, cuts: &[] };
-    voronoi_cell(&x, &candidates, f64::INFINITY, &container, scratch).ok()
+    let mut found = Vec::new();
+    // Amid others of its region a cell is small; where there are none beyond, it reaches as far as the box.
+    for radius in [NEARBY * spacing, 2.0 * reach * (N as f64).sqrt() * SEARCH_MARGIN] {
+        found.clear();
+        list.within(&x, radius, &mut found);
+        let candidates: Vec<(u32, [f64; N])> = found
+            .iter()
+            .map(|&place| (region.nodes[place as usize], region.places[place as usize]))
+            .filter(|(j, _)| *j as usize != i)
+            .collect();
+        match voronoi_cell(&x, &candidates, radius, &container, scratch) {
+            Err(CellError::Incomplete { .. }) => {}
+            other => return other.ok(),
+        }
+    }
+    None
 }
 
 /// What the faces of all cells are put together from.

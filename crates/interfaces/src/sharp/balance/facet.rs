@@ -6,11 +6,8 @@
 /// Newton steps to a point of three surfaces.
 const STEPS: usize = 25;
 
-/// Steps shorter than this, over the size of what is looked at, are the last.
-const LAST_STEP: f64 = 1e-15;
-
-/// Steps longer than this at the end mean that there is no such point.
-const CONVERGED: f64 = 1e-9;
+/// Steps shorter than this, over the size of what is looked at, are the last: what they leave is as large as their square.
+const LAST_STEP: f64 = 1e-8;
 
 /// Distance from a surface, over the coordinates, up to which a vertex is on it.
 const ON: f64 = 1e-14;
@@ -22,8 +19,10 @@ const NO_AREA: f64 = 1e-13;
 const PARTS: usize = 4;
 const CURVED_PARTS: usize = 3;
 
-/// How far a curved polygon reaches beyond its vertices, and a curved surface between them, over their largest distance, at most.
+/// How far a curved polygon reaches beyond its vertices, and a curved surface between them, over their largest distance: as much of
+/// the angle that it turns by, twice what an arc has, and this at least and at most.
 const BULGE: f64 = 0.5;
+const BULGES: [f64; 2] = [0.05, 0.5];
 
 /// How often a polygon is halved until a surface cuts it in one line.
 const HALVINGS: usize = 5;
@@ -92,7 +91,7 @@ fn meet(surfaces: [&Surface<'_>; 3], x: &[f64; 3], size: f64) -> Option<[f64; 3]
             break;
         }
     }
-    let converged = if planes { last <= size } else { last <= CONVERGED * size };
+    let converged = if planes { last <= size } else { last <= LAST_STEP * size };
     (converged && length(&minus(&at, x)) <= size).then_some(at)
 }
 
@@ -153,7 +152,7 @@ impl<'a> Surface<'a> {
                 break;
             }
         }
-        (last <= CONVERGED * size && length(&minus(&at, x)) <= size).then_some(at)
+        (last <= LAST_STEP * size && length(&minus(&at, x)) <= size).then_some(at)
     }
 }
 
@@ -271,11 +270,16 @@ impl<'a> Facet<'a> {
         Some(length(&area) > NO_AREA * self.size * self.size)
     }
 
+    /// Whether all of the polygon is where the level of a surface is negative, as far as is told at once.
+    pub(super) fn is_within(&self, by: &Surface<'_>) -> bool {
+        self.side(by) == Some(0)
+    }
+
     /// The side of a surface on which all of the polygon is; `None` where that takes a closer look.
     fn side(&self, by: &Surface<'_>) -> Option<usize> {
         let bulge = match by.is_plane() && self.is_straight() {
             true => 0.0,
-            false => BULGE * self.radius_of_vertices(),
+            false => self.radius_of_vertices() * self.bulge(by),
         };
         let positive = by.height(&self.vertices[0], self.size) > 0.0;
         let is_apart = |x: &[f64; 3]| {
@@ -283,6 +287,16 @@ impl<'a> Facet<'a> {
             (height > 0.0) == positive && height.abs() >= bulge
         };
         self.vertices.iter().all(is_apart).then_some(usize::from(positive))
+    }
+
+    fn bulge(&self, by: &Surface<'_>) -> f64 {
+        let turn = |surface: &Surface<'_>| {
+            let first = surface.normal(&self.vertices[0]);
+            let others = self.vertices.iter().skip(1).map(|x| length(&minus(&surface.normal(x), &first)));
+            others.fold(0.0, f64::max)
+        };
+        let curved = [&self.surface, by].into_iter().chain(&self.edges).filter(|surface| !surface.is_plane());
+        (BULGE * curved.map(turn).fold(0.0, f64::max)).clamp(BULGES[0], BULGES[1])
     }
 
     fn radius_of_vertices(&self) -> f64 {

@@ -1,10 +1,10 @@
-//! The flux through a face in terms of values and data, from one fit round its middle.
+//! The flux through a face in terms of values and data, from a fit round its middle, or round the node whose cell it is of.
 
 use super::faces::{Beyond, Face};
 use crate::sharp::fit::{Row, Wanted};
 use crate::sharp::maker::{Maker, Scratch};
 use crate::sharp::stencil::Heard;
-use crate::{Condition, MethodError};
+use crate::{Condition, MethodError, parallel};
 
 /// What is left of the reproduction of a flux before it counts as not determined, over what it is made of.
 const REPRODUCTION: f64 = 1e-6;
@@ -57,10 +57,48 @@ impl<const D: usize> Maker<'_, D> {
         usize::from(second < first)
     }
 
-    /// The flux of a face; `None` where no fit determines it.
-    pub(super) fn flux(&self, face: &Face<D>, scratch: &mut Scratch<D>) -> Result<Option<Flux>, MethodError> {
+    /// The node whose fit the flux of a face is told from, with those of the other faces of its cell; `None` where it has a fit of its
+    /// own round the middle: in the plane, and on interfaces, where most of the error comes from.
+    pub(super) fn seat(&self, face: &Face<D>) -> Option<u32> {
+        let label = |j: u32| self.problem.labels[j as usize];
+        let is_inside = match face.beyond {
+            Beyond::Node(other) => label(other) == label(face.node),
+            Beyond::Boundary(_) => true,
+        };
+        (D > 2 && is_inside).then_some(face.node)
+    }
+
+    /// The fluxes of all faces; `None` where no fit determines one.
+    pub(super) fn fluxes(&self, faces: &[Face<D>]) -> Result<Vec<Option<Flux>>, MethodError> {
+        let mut order: Vec<(Option<u32>, usize)> =
+            faces.iter().enumerate().map(|(place, face)| (self.seat(face), place)).collect();
+        order.sort_unstable();
+        let shared = |a: &(Option<u32>, usize), b: &(Option<u32>, usize)| a.0.is_some() && a.0 == b.0;
+        let groups: Vec<&[(Option<u32>, usize)]> = order.chunk_by(shared).collect();
+        let found = parallel::try_map_with(groups.len(), Scratch::default, |scratch, g| {
+            let seat = groups[g][0].0.map(|node| node as usize);
+            let at = |j: usize| (&self.problem.cloud.points()[j], self.unknowns.part[j], Heard::All);
+            let is_known = seat.is_none_or(|j| self.factor_at(at(j), scratch, |_| true).is_some());
+            let flux = |&(_, place): &(Option<u32>, usize)| match is_known {
+                true => self.flux(&faces[place], seat.is_some(), scratch),
+                false => Ok(None),
+            };
+            groups[g].iter().map(flux).collect::<Result<Vec<_>, _>>()
+        })?;
+        let mut fluxes: Vec<Option<Flux>> = vec![None; faces.len()];
+        order.iter().zip(found.into_iter().flatten()).for_each(|(&(_, place), flux)| fluxes[place] = flux);
+        Ok(fluxes)
+    }
+
+    /// The flux of a face, from the fit that was factored last if that is `seated` for it; `None` where no fit determines it.
+    fn flux(
+        &self,
+        face: &Face<D>,
+        seated: bool,
+        scratch: &mut Scratch<D>,
+    ) -> Result<Option<Flux>, MethodError> {
         match face.beyond {
-            Beyond::Node(other) => Ok(self.between(face, other, scratch)),
+            Beyond::Node(other) => Ok(self.between((face, other), seated, scratch)),
             Beyond::Boundary(id) => {
                 let mut conditions = Vec::with_capacity(face.points.len());
                 for point in &face.points {
@@ -68,14 +106,19 @@ impl<const D: usize> Maker<'_, D> {
                         || MethodError::NoCondition { node: face.node as usize, position: point.at.to_vec() };
                     conditions.push(self.problem.boundary.condition(id, &point.at).ok_or_else(none)?);
                 }
-                Ok(self.at_boundary(face, &conditions, scratch))
+                Ok(self.at_boundary((face, &conditions), seated, scratch))
             }
         }
     }
 
     /// The flux by the gradient of the polynomial of the softer side, and as much of the misfits of both nodes' values as a flux between
     /// two points would have.
-    fn between(&self, face: &Face<D>, other: u32, scratch: &mut Scratch<D>) -> Option<Flux> {
+    fn between(
+        &self,
+        (face, other): (&Face<D>, u32),
+        seated: bool,
+        scratch: &mut Scratch<D>,
+    ) -> Option<Flux> {
         let nodes = [face.node, other];
         let labels = nodes.map(|j| self.problem.labels[j as usize]);
         let parts = nodes.map(|j| self.unknowns.part[j as usize]);
@@ -84,7 +127,9 @@ impl<const D: usize> Maker<'_, D> {
             return None;
         }
         let softer = if crosses { self.softer(nodes) } else { 0 };
-        self.factor_at((&face.middle, parts[softer], Heard::All), scratch, |_| true)?;
+        if !seated {
+            self.factor_at((&face.middle, parts[softer], Heard::All), scratch, |_| true)?;
+        }
         let points = self.problem.cloud.points();
         let conductance = self.conductance(face, other);
         let mut wanted = self.gradients(face, labels[softer], scratch);
@@ -136,8 +181,8 @@ impl<const D: usize> Maker<'_, D> {
     /// What a boundary lets through: what is prescribed, or where the value is, the gradient of the fit.
     fn at_boundary(
         &self,
-        face: &Face<D>,
-        conditions: &[Condition],
+        (face, conditions): (&Face<D>, &[Condition]),
+        seated: bool,
         scratch: &mut Scratch<D>,
     ) -> Option<Flux> {
         let node = face.node as usize;
@@ -159,7 +204,9 @@ impl<const D: usize> Maker<'_, D> {
                 return Some(Flux { known: [known; 2], ..Flux::default() });
             }
         }
-        self.factor_at((&face.middle, part, Heard::All), scratch, |_| true)?;
+        if !seated {
+            self.factor_at((&face.middle, part, Heard::All), scratch, |_| true)?;
+        }
         let mut wanted = Vec::new();
         let scale = self.unknowns.scale[part as usize];
         let Scratch { stencil, .. } = scratch;

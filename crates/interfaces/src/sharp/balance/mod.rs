@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use meshless_geometry::gauss;
 
-use super::maker::{Maker, Row, Scratch};
+use super::maker::{Maker, Row};
 use super::params::Conservation;
 use crate::corners::{CornerData, corners};
 use crate::{InterfaceFlux, MethodError, parallel};
@@ -48,9 +48,7 @@ pub(super) fn replace<const D: usize>(
         return Ok(Vec::new());
     }
     let faces = Faces::find(maker, &wanted)?;
-    let fluxes = parallel::try_map_with(faces.all.len(), Scratch::default, |scratch, k| {
-        maker.flux(&faces.all[k], scratch)
-    })?;
+    let fluxes = maker.fluxes(&faces.all)?;
     let made = parallel::map(rows.len(), |k| balance(maker, &rows[k], &faces, &fluxes));
     for (row, made) in rows.iter_mut().zip(made) {
         if let Some(made) = made {

@@ -280,6 +280,10 @@ impl<'b, const D: usize> Geometry<'_, 'b, D> {
         let Smooth { surface, of, .. } = self.smooth[place];
         let x = solid(&self.problem.cloud.points()[i]);
         let label = self.problem.labels[i];
+        // An interface is told from the region that is named first.
+        if of == Of::Region && label as usize + 1 == self.problem.regions.len() {
+            return Some(());
+        }
         let spacing = self.problem.cloud.spacing()[i];
         let step = BESIDE * spacing;
         let half_width = MARGIN * f64::min(0.5 * own.cell.reach, FARTHEST_POINT * spacing);
@@ -344,6 +348,11 @@ impl<'b, const D: usize> Geometry<'_, 'b, D> {
             |j: usize| region.places[j].iter().zip(middle).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         let mut found = Vec::new();
         list.within(middle, away(nearest) + OTHERS * part.radius(middle)?, &mut found);
+        // A node that all of the part is farther from than from the nearest one has nothing of it.
+        let first = &region.places[nearest];
+        found.retain(|&j| {
+            j as usize == nearest || !part.is_within(&Surface::between(first, &region.places[j as usize]))
+        });
         for &j in &found {
             let own = &region.places[j as usize];
             let walls = found.iter().filter(|&&k| k != j);
