@@ -32,6 +32,7 @@ mod boundary;
 mod cells;
 mod cloud;
 mod domain;
+mod edges;
 mod elements;
 mod error;
 mod level_set;
@@ -56,6 +57,7 @@ pub use cloud::{
     Touch, around, check_size, estimate_nodes, generate, quality,
 };
 pub use domain::{Domain, FaceId};
+pub use edges::{Edge, Frame, edges};
 pub use elements::{Element, side_elements};
 pub use error::GeometryError;
 pub use level_set::{GRADIENT_STEP, LevelSet, LevelSetFn};

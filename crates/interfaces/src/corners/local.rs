@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use meshless_geometry::{FaceId, Vertex};
+use meshless_geometry::{Edge, FaceId, Frame, Vertex};
 use nalgebra::{DMatrix, DVector};
 
-use super::CornerData;
 use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
+use super::{Corner, CornerData};
 use crate::Condition;
 use crate::problem::between;
 
@@ -41,6 +41,12 @@ const VANISHING: f64 = 1e-6;
 /// How far along the rays data are looked at to tell what they do at the vertex, over their length.
 const NEAR: f64 = 0.25;
 
+/// Places along an edge, over half its length, and distances from it, over the clear one, at which data are compared; what they may
+/// differ by as rounding.
+const STATIONS: [f64; 3] = [0.0, -0.83, 0.71];
+const DISTANCES: [f64; 3] = [0.07, 0.31, 0.73];
+const SAME: f64 = 1e-9;
+
 /// Difference of angles, in radians, up to which two wedges are the same: rounding of vertices.
 const ALIKE: f64 = 1e-12;
 
@@ -57,6 +63,8 @@ pub enum Obstacle {
     Touching,
     /// Conditions that change their kind near it, or data that have no value.
     Data,
+    /// In space: sources or data that are not the same all along an edge.
+    VariesAlong,
     /// Nodes are too far apart for the sides that meet there.
     Spacing,
     /// It is not in the plane, or the method has no corner functions.
@@ -72,6 +80,7 @@ impl Obstacle {
             Self::Exchange => "the flux through a boundary that meets there depends on u",
             Self::Touching => "several parts of the domain touch there",
             Self::Data => "the data there have no value, or change their kind",
+            Self::VariesAlong => "the data change along the edge",
             Self::Spacing => "the sides that meet there are shorter than a few spacings",
             Self::Method => "the method has no corner functions there",
         }
@@ -81,10 +90,23 @@ impl Obstacle {
 /// A monomial of a polynomial in the coordinates from a vertex: exponents, factor.
 pub(crate) type Monomial = ([u8; 2], f64);
 
-/// A vertex as a local problem.
+/// The extent of an edge in space along itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Along {
+    /// Half its length.
+    pub(crate) half_length: f64,
+    /// Whether it ends at a plane of the boundary at right angles to it, at the lower end and at the upper one.
+    pub(crate) at_wall: [bool; 2],
+}
+
+/// A vertex in the plane, or what is across an edge in space, as a local problem.
 #[derive(Debug, Clone)]
 pub(crate) struct Local {
-    /// Where.
+    /// The plane.
+    pub(crate) frame: Frame,
+    /// Of an edge.
+    pub(crate) along: Option<Along>,
+    /// Where in the plane.
     pub(crate) at: [f64; 2],
     /// Angle of the first ray.
     start: f64,
@@ -139,7 +161,10 @@ impl Scales {
         let source = |k: usize| {
             let material = &problem.materials[local.labels[k] as usize];
             let at = |distance: f64| {
-                let f = material.source.as_ref().map_or(0.0, |f| f.at(&in_space(local.inside(k, distance))));
+                let f = material
+                    .source
+                    .as_ref()
+                    .map_or(0.0, |f| f.at(&local.in_space(local.inside(k, distance))));
                 if f.is_finite() { f } else { 0.0 }
             };
             // A source that vanishes at the vertex leaves rounding there.
@@ -158,6 +183,106 @@ impl Scales {
 }
 
 impl Local {
+    /// A point of the plane.
+    pub(crate) fn in_space<const D: usize>(&self, x: [f64; 2]) -> [f64; D] {
+        self.frame.place(x, 0.0)
+    }
+
+    /// Coordinates in the plane, and along an edge from its middle.
+    pub(crate) fn coordinates<const D: usize>(&self, x: &[f64; D]) -> ([f64; 2], f64) {
+        self.frame.coordinates(x)
+    }
+
+    /// Distance of a point, from the line of an edge where that is beside it, else from its nearer end.
+    pub(crate) fn distance<const D: usize>(&self, x: &[f64; D]) -> f64 {
+        let (across, z) = self.coordinates(x);
+        let r = (across[0] - self.at[0]).hypot(across[1] - self.at[1]);
+        match self.along {
+            Some(along) if z.abs() > along.half_length => r.hypot(z.abs() - along.half_length),
+            _ => r,
+        }
+    }
+
+    /// Whether it is an edge that ends in a vertex, near which its functions are not those of the solution.
+    pub(crate) fn has_open_end(&self) -> bool {
+        self.along.is_some_and(|along| along.at_wall.contains(&false))
+    }
+
+    /// How far a point is, along an edge, from where that ends in a vertex; negative beyond.
+    pub(crate) fn to_open_end<const D: usize>(&self, x: &[f64; D]) -> f64 {
+        self.along.map_or(f64::INFINITY, |along| {
+            let (_, z) = self.coordinates(x);
+            let to = |side: usize| match along.at_wall[side] {
+                true => f64::INFINITY,
+                false => along.half_length + if side == 0 { z } else { -z },
+            };
+            to(0).min(to(1))
+        })
+    }
+
+    /// As it is reported.
+    pub(crate) fn corner(&self, exponent: f64, obstacle: Option<Obstacle>) -> Corner {
+        let at = match self.along {
+            None => self.at.to_vec(),
+            Some(_) => self.in_space::<3>(self.at).to_vec(),
+        };
+        let clear = self.along.map_or(self.clear, |along| self.clear.min(along.half_length));
+        Corner { at, exponent, clear, obstacle, ends: self.has_open_end() }
+    }
+
+    /// The local problems across an edge.
+    pub(crate) fn across<const D: usize>(
+        problem: &CornerData<'_, D>,
+        edge: &Edge,
+        known: &mut KnownWedges,
+    ) -> Vec<Self> {
+        let along = Along { half_length: edge.half_length, at_wall: edge.at_wall };
+        let mut all = Self::all(problem, (&edge.frame, &edge.around), known);
+        for local in &mut all {
+            local.along = Some(along);
+            if local.obstacle.is_none() && local.varies_along(problem, edge.half_length) {
+                local.obstacle = Some(Obstacle::VariesAlong);
+            }
+        }
+        all
+    }
+
+    /// Whether sources or data change along an edge of this half length.
+    fn varies_along<const D: usize>(&self, problem: &CornerData<'_, D>, half_length: f64) -> bool {
+        let sectors = self.wedge.sectors.len();
+        let mut seen: Vec<Vec<f64>> = Vec::new();
+        for z in STATIONS.map(|part| part * half_length) {
+            let mut here = Vec::new();
+            for r in DISTANCES.map(|part| part * self.clear) {
+                for (k, label) in self.labels.iter().enumerate() {
+                    let x: [f64; D] = self.frame.place(self.inside(k, r), z);
+                    let source = problem.materials[*label as usize].source.as_ref();
+                    here.push(source.map_or(0.0, |f| f.at(&x)));
+                }
+                for ray in 0..self.wedge.inner_rays() {
+                    let x: [f64; D] = self.frame.place(self.on_ray(ray + 1, r), z);
+                    let labels = [self.labels[ray], self.labels[(ray + 1) % sectors]];
+                    let Some((jump, _)) = between(problem.jumps, labels[0], labels[1]) else { continue };
+                    here.extend([&jump.value, &jump.flux].map(|f| f.as_ref().map_or(0.0, |f| f.at(&x))));
+                }
+                for (face, ray) in self.faces.iter().zip([0, sectors]) {
+                    let x: [f64; D] = self.frame.place(self.on_ray(ray, r), z);
+                    here.extend(match problem.boundary.condition(*face, &x) {
+                        Some(Condition::Dirichlet(value)) => [1.0, value, 0.0],
+                        Some(other) => other.as_flux(1.0).map_or([3.0, 0.0, 0.0], |(a, flux)| [2.0, a, flux]),
+                        None => [4.0, 0.0, 0.0],
+                    });
+                }
+            }
+            seen.push(here);
+        }
+        let differs = |other: &Vec<f64>| {
+            let alike = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs().max(b.abs());
+            other.len() != seen[0].len() || !other.iter().zip(&seen[0]).all(alike)
+        };
+        seen.iter().skip(1).any(differs)
+    }
+
     /// The point at a distance in the middle of a sector.
     pub(crate) fn inside(&self, sector: usize, distance: f64) -> [f64; 2] {
         let before: f64 = self.wedge.sectors[..sector].iter().map(|s| s.opening).sum();
@@ -168,7 +293,7 @@ impl Local {
     /// The local problems at a vertex: one for every part of the domain that meets there.
     pub(crate) fn all<const D: usize>(
         problem: &CornerData<'_, D>,
-        vertex: &Vertex,
+        (frame, vertex): (&Frame, &Vertex),
         known: &mut KnownWedges,
     ) -> Vec<Self> {
         let count = vertex.rays.len();
@@ -180,7 +305,7 @@ impl Local {
         let touching = (firsts.len() > 1).then_some(Obstacle::Touching);
         let mut of_part = |&first: &usize| {
             let own = (0..count).map(|k| (first + k) % count).take_while(|&k| vertex.sectors[k].is_some());
-            Self::of_part(problem, vertex, &own.collect::<Vec<_>>(), known)
+            Self::of_part(problem, (frame, vertex), &own.collect::<Vec<_>>(), known)
         };
         let mut all: Vec<Self> = firsts.iter().filter_map(&mut of_part).collect();
         all.iter_mut().for_each(|local| local.obstacle = local.obstacle.or(touching));
@@ -189,7 +314,7 @@ impl Local {
 
     fn of_part<const D: usize>(
         problem: &CornerData<'_, D>,
-        vertex: &Vertex,
+        (frame, vertex): (&Frame, &Vertex),
         own: &[usize],
         known: &mut KnownWedges,
     ) -> Option<Self> {
@@ -212,7 +337,7 @@ impl Local {
         for (&k, &label) in own.iter().zip(&labels) {
             let opening = vertex.opening(k);
             let (sin, cos) = (turned + 0.5 * opening).sin_cos();
-            let x = in_space([vertex.at[0] + beside * cos, vertex.at[1] + beside * sin]);
+            let x = frame.place([vertex.at[0] + beside * cos, vertex.at[1] + beside * sin], 0.0);
             let diffusivity = &problem.materials.get(label as usize)?.diffusivity;
             note(diffusivity.as_constant().is_none(), Obstacle::Varies);
             let eta = diffusivity.at(&x);
@@ -230,7 +355,7 @@ impl Local {
             let [first, last] = [faces.first()?, faces.get(1)?];
             let mut found = [End::Flux; 2];
             for (end, (&ray, &face)) in found.iter_mut().zip(outer.iter().zip([first, last])) {
-                let x = in_space(vertex.along(ray, beside));
+                let x = frame.place(vertex.along(ray, beside), 0.0);
                 match problem.boundary.condition(face, &x) {
                     Some(Condition::Dirichlet(_)) => *end = End::Dirichlet,
                     Some(Condition::Robin { a, .. }) => note(a != 0.0, Obstacle::Exchange),
@@ -242,7 +367,19 @@ impl Local {
         }
         let wedge = Wedge { sectors, ends };
         let exponents = known.exponents(&wedge);
-        Some(Self { at: vertex.at, start, wedge, labels, faces, clear: vertex.clear, obstacle, exponents })
+        let (frame, along) = (*frame, None);
+        Some(Self {
+            frame,
+            along,
+            at: vertex.at,
+            start,
+            wedge,
+            labels,
+            faces,
+            clear: vertex.clear,
+            obstacle,
+            exponents,
+        })
     }
 
     /// The smallest exponent whose function is no polynomial in the sectors.
@@ -351,7 +488,7 @@ impl Local {
             all[0].values[ray] = scales.offset[ray] - scales.offset[next];
             let (before, after) = (self.labels[ray], self.labels[next]);
             let Some((jump, sign)) = between(problem.jumps, before, after) else { continue };
-            let at = |t: f64| in_space(self.on_ray(ray + 1, t));
+            let at = |t: f64| self.in_space(self.on_ray(ray + 1, t));
             if let Some(field) = &jump.value {
                 let values = polynomial(&|t| Some(sign * field.at(&at(t))))?;
                 values.iter().enumerate().for_each(|(power, c)| all[power].values[ray] += c);
@@ -364,7 +501,7 @@ impl Local {
         for (k, end) in wedge.ends.iter().flatten().enumerate() {
             let (ray, sector, face) =
                 if k == 0 { (0, 0, self.faces[0]) } else { (sectors, sectors - 1, self.faces[1]) };
-            let condition = |t: f64| problem.boundary.condition(face, &in_space(self.on_ray(ray, t)));
+            let condition = |t: f64| problem.boundary.condition(face, &self.in_space(self.on_ray(ray, t)));
             // The angle grows into the domain on the first ray, and out of it on the last.
             let (out, eta) = (if k == 0 { -1.0 } else { 1.0 }, wedge.sectors[sector].eta);
             match end {
@@ -539,9 +676,4 @@ fn along(radius: f64, degree: usize, value: &dyn Fn(f64) -> Option<f64>) -> Opti
         error = error.max((polynomial(place(between)) - at(between)?).abs());
     }
     Some((factors, error))
-}
-
-/// A point of the plane in any dimension.
-pub(crate) fn in_space<const D: usize>(x: [f64; 2]) -> [f64; D] {
-    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
 }

@@ -4,15 +4,16 @@
 //! problem and says which of them have a solution that is no polynomial on every side; the sharp method uses the functions there in
 //! place of polynomials.
 
-mod edges;
 mod local;
+mod rims;
 mod wedge;
 
-use meshless_geometry::{Domain, FaceId, PlanarPiece, PlanarPieces, RegionMap};
+use meshless_geometry::{Domain, FaceId, Frame, PlanarPiece, PlanarPieces, RegionMap};
 
 use local::KnownWedges;
 pub use local::Obstacle;
-pub(crate) use local::{Local, LocalSolution, Monomial, Scales, in_space};
+pub(crate) use local::{Local, LocalSolution, Monomial, Scales};
+pub(crate) use rims::rims;
 
 use crate::{BoundaryData, Condition, InterfaceJump, Material, Problem};
 
@@ -43,6 +44,8 @@ pub struct Corner {
     pub clear: f64,
     /// Why corner functions do not serve it; `None` where they do.
     pub obstacle: Option<Obstacle>,
+    /// An edge in space that ends in a vertex: near that its functions are not those of the solution, and nothing serves it.
+    pub ends: bool,
 }
 
 /// What corners depend on: a problem before it has a cloud.
@@ -76,15 +79,22 @@ impl<'a, const D: usize> From<&Problem<'a, D>> for CornerData<'a, D> {
     }
 }
 
-/// The local problems at all vertices of the plane, with exponents up to a degree.
+/// The local problems at all vertices of the plane, or at all straight edges in space, with exponents up to a degree.
 pub(crate) fn local_problems<const D: usize>(data: &CornerData<'_, D>, degree: f64) -> Vec<Local> {
-    if D != 2 {
-        return Vec::new();
-    }
-    let pieces = PlanarPieces::new(data.domain, data.regions);
-    let vertices = pieces.vertices(&breaks(data, &pieces));
     let mut known = KnownWedges::new(degree);
-    vertices.iter().flat_map(|vertex| Local::all(data, vertex, &mut known)).collect()
+    match D {
+        2 => {
+            let pieces = PlanarPieces::new(data.domain, data.regions);
+            let vertices = pieces.vertices(&breaks(data, &pieces));
+            let frame = Frame::COORDINATES;
+            vertices.iter().flat_map(|vertex| Local::all(data, (&frame, vertex), &mut known)).collect()
+        }
+        3 => {
+            let edges = meshless_geometry::edges(data.domain, data.regions);
+            edges.iter().flat_map(|edge| Local::across(data, edge, &mut known)).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// The vertices at which the solution has a power of the distance below `order` that is no polynomial. With a method that has no
@@ -93,13 +103,11 @@ pub fn corners<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Vec<Co
     let corner = |local: &Local| {
         let exponent = broken_power(data, local, order)?;
         let obstacle = Some(local.obstacle.unwrap_or(Obstacle::Method));
-        Some(Corner { at: local.at.to_vec(), exponent, clear: local.clear, obstacle })
+        Some(local.corner(exponent, obstacle))
     };
-    match D {
-        2 => local_problems(data, order as f64).iter().filter_map(corner).collect(),
-        3 => edges::edges(data, order),
-        _ => Vec::new(),
-    }
+    let mut all: Vec<Corner> = local_problems(data, order as f64).iter().filter_map(corner).collect();
+    all.extend(rims(data, order));
+    all
 }
 
 /// The smallest power below `order` that is no polynomial on every side of a vertex, for the source right at the vertex.
@@ -109,6 +117,10 @@ pub(crate) fn broken_power<const D: usize>(
     order: usize,
 ) -> Option<f64> {
     let exponent = local.broken_exponent();
+    if local.obstacle == Some(Obstacle::VariesAlong) {
+        // What u does along the edge is a source across it that is not known.
+        return exponent.filter(|power| *power < order as f64);
+    }
     let scales = Scales::plain(data, local);
     let solution = local.solve(data, &scales, order).ok();
     let power = match &solution {
@@ -165,13 +177,14 @@ struct Datum {
 
 impl Datum {
     fn at<const D: usize>(problem: &CornerData<'_, D>, face: FaceId, piece: &PlanarPiece, t: f64) -> Self {
-        let (kind, value) = match problem.boundary.condition(face, &in_space(piece.at(t))) {
-            None => (0, 0.0),
-            Some(Condition::Dirichlet(value)) => (1, value),
-            Some(Condition::Neumann(value)) => (2, value),
-            Some(Condition::Flux(value)) => (3, value),
-            Some(Condition::Robin { a, b, g }) => (if a == 0.0 { 3 } else { 4 }, g / b),
-        };
+        let (kind, value) =
+            match problem.boundary.condition(face, &Frame::COORDINATES.place(piece.at(t), 0.0)) {
+                None => (0, 0.0),
+                Some(Condition::Dirichlet(value)) => (1, value),
+                Some(Condition::Neumann(value)) => (2, value),
+                Some(Condition::Flux(value)) => (3, value),
+                Some(Condition::Robin { a, b, g }) => (if a == 0.0 { 3 } else { 4 }, g / b),
+            };
         Self { kind, value }
     }
 }

@@ -248,12 +248,7 @@ impl<const D: usize> Fit<D> {
     }
 
     fn assemble(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
-        let at_vertex = stencil.vertex.is_some();
-        let boundary: usize = if at_vertex {
-            0
-        } else {
-            stencil.nodes.iter().map(|&j| maker.boundary_rows[j as usize].len()).sum()
-        };
+        let boundary: usize = stencil.nodes.iter().map(|&j| maker.conditions(j, stencil).count()).sum();
         let at_nodes = stencil.part_of.iter().filter(|&&part| self.parts.has_rows(part)).count();
         let at_points = |&(_, sides): &(u32, [usize; 2])| {
             2 + sides.iter().filter(|&&part| self.parts.has_rows(part)).count()
@@ -336,16 +331,12 @@ impl<const D: usize> Fit<D> {
             let mut given = Given { share: self.share(maker, part, -weight), ..Given::default() };
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
-            if vertex.is_some() {
-                // Its functions meet all conditions.
-                continue;
-            }
             let (eta, scale) = (maker.problem.eta[j], self.parts.scale(part));
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
                 self.equation(maker, part, (&z, &jet), &maker.slope(j), radius, eta * scale, source);
             }
-            for condition in &maker.boundary_rows[j] {
+            for condition in maker.conditions(j as u32, stencil) {
                 let functional = Row {
                     value: BOUNDARY_WEIGHT * radius * condition.exchange / eta,
                     gradient: condition.normal.map(|n| BOUNDARY_WEIGHT * n),
@@ -354,7 +345,12 @@ impl<const D: usize> Fit<D> {
                 let factor = BOUNDARY_WEIGHT * radius / (eta * scale);
                 let offset = maker.unknowns.offset[stencil.parts[part] as usize];
                 let known = factor * (condition.flux - condition.exchange * offset);
-                let share = Share { of: part, less: None, factor: -factor * condition.exchange };
+                let of = self.parts.constant_of(part);
+                let share = of.map_or_else(Share::default, |of| Share {
+                    of,
+                    less: None,
+                    factor: -factor * condition.exchange,
+                });
                 let mut given = Given { known, unit_source: 0.0, share };
                 self.put(self.given.len(), part, (&z, &jet), &functional, &mut given);
                 self.given.push(given);

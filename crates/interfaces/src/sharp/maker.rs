@@ -134,6 +134,17 @@ impl<'a, const D: usize> Maker<'a, D> {
         self.slopes.as_ref().map_or([0.0; D], |slopes| slopes[j])
     }
 
+    /// The conditions on the flux at a node that a fit has as rows: functions of a vertex meet all but those at the ends of an edge.
+    pub(super) fn conditions<'r>(
+        &'r self,
+        j: u32,
+        stencil: &Stencil<D>,
+    ) -> impl Iterator<Item = &'r BoundaryRow<D>> + use<'r, 'a, D> {
+        let vertex = stencil.vertex.map(|vertex| self.vertices.get(vertex));
+        let rows = self.boundary_rows[j as usize].iter();
+        rows.filter(move |row| vertex.is_none_or(|vertex| vertex.is_ended_by(&row.normal)))
+    }
+
     /// Gathers and factors the stencil of node i, a larger one where the first does not determine its value. Leaves
     /// the combination of the value in `scratch`; returns whether the stencil was enlarged.
     pub(super) fn factor(&self, i: usize, scratch: &mut Scratch<D>) -> Result<bool, MethodError> {

@@ -100,7 +100,7 @@ impl<const D: usize> Method<D> for Sharp {
                 maker.keeps_gradients().then(|| gradients(maker, &known, &mut rows)).transpose()?;
             let interface_fluxes = balance::replace(maker, &mut rows)?;
             let seconds = start.elapsed().as_secs_f64();
-            let corners = (D == 2).then(|| maker.vertices.corners.clone());
+            let corners = (D > 1).then(|| maker.vertices.corners.clone());
             Ok(Discretization {
                 gradients,
                 corners,

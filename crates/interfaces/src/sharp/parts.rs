@@ -242,6 +242,14 @@ impl<const D: usize> Parts<D> {
         (*reference != Some(part)).then_some((part, *reference, -1.0 / scale))
     }
 
+    /// The place of the part whose constant stands beside the polynomial of one where u is asked for; `None` where no constant does.
+    pub(super) fn constant_of(&self, part: usize) -> Option<usize> {
+        match &self.at_vertex {
+            Some(at) => at.reference,
+            None => Some(part),
+        }
+    }
+
     /// Writes a field at samples of the stencil's ball to `values`; `None` where it is not a number somewhere.
     fn sample(
         &mut self,
@@ -413,7 +421,8 @@ impl<const D: usize> Parts<D> {
         let x = std::array::from_fn(|k| at.center[k] + at.radius * z[k]);
         let scale = |place: usize| maker.unknowns.scale[at.parts[place] as usize];
         let constant = at.reference.map_or(0.0, |reference| scale(reference) / scale(part));
-        at.given = maker.vertices.get(at.vertex).evaluate(at.parts[part], &x, (at.reach, constant), jet);
+        let vertex = maker.vertices.get(at.vertex);
+        at.given = vertex.evaluate(at.parts[part], (&x, &at.center), (at.reach, constant), jet);
         jet.gradients.iter_mut().flatten().for_each(|slope| *slope *= at.radius);
     }
 

@@ -92,7 +92,8 @@ impl<const D: usize> Stencil<D> {
             // Twice as many are asked as are wanted: some lie beyond what the functions are of.
             self.nearest(center, 2 * count, nodes);
             let points = nodes.points();
-            self.nodes.retain(|&j| vertices.get(vertex).reaches(&points[j as usize]));
+            let vertex = vertices.get(vertex);
+            self.nodes.retain(|&j| vertex.reaches(&points[j as usize], unknowns.part[j as usize]));
             self.nodes.truncate(count);
             let farthest = self.nodes.last().map(|&j| &points[j as usize]);
             self.radius =

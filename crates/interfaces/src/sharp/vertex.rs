@@ -2,7 +2,8 @@
 //!
 //! Near a vertex where straight edges of interfaces and boundaries meet, the polynomials of all parts of a stencil give way to one
 //! set of functions `r^lambda Phi(theta)` that meets every condition there exactly, and to what the data add. Only values at nodes are
-//! rows of such a fit. See `docs/corners.md`.
+//! rows of such a fit. Along a straight edge in space the same functions come with powers of the coordinate along it. See
+//! `docs/corners.md`.
 
 use meshless_neighbors::CellList;
 
@@ -12,7 +13,7 @@ use super::particular::Particular;
 use super::parts::Row;
 use super::unknowns::Unknowns;
 use crate::corners::{
-    Corner, CornerData, Local, LocalSolution, Monomial, Obstacle, Scales, in_space, local_problems,
+    Corner, CornerData, Local, LocalSolution, Monomial, Obstacle, Scales, local_problems, rims,
 };
 use crate::{Field, Problem};
 
@@ -28,6 +29,14 @@ const SEVERE: f64 = 2.0;
 
 /// Where a zone is narrower than it should be, what lies round it is balanced up to this many times as far as it should reach.
 const BEYOND: f64 = 2.0;
+
+/// How far from an edge in space all is balanced, in spacings: as far as a stencil sees it.
+const BALANCED_BESIDE_EDGE: f64 = 3.0;
+
+/// How near to the end of an edge, where that is a vertex, fits take its functions: farther from the end than this part of a stencil's
+/// radius, and not farther from the edge than this many times the distance from the end. Measured (`docs/corners.md`).
+const BLIND: f64 = 0.25;
+const TOWARDS_END: f64 = 2.0;
 
 /// Exponents below this have fluxes that are too singular for a balance beside the vertex.
 const LEAST_BALANCED: f64 = 0.4;
@@ -55,6 +64,9 @@ const BETWEEN: f64 = 0.95;
 /// Distance from a vertex, over the clear one, below which a node is there.
 const AT_VERTEX: f64 = 1e-9;
 
+/// Least cosine of the angle between an edge and the normal of a face that ends it.
+const ACROSS: f64 = 0.5;
+
 /// Where the part of a sector is looked for, over the clear distance.
 const INSIDE: f64 = 0.25;
 
@@ -64,12 +76,16 @@ pub(super) struct Vertex {
     local: Local,
     solution: LocalSolution,
     scales: Scales,
+    /// The columns of a fit.
+    terms: Vec<Term>,
     /// The polynomial of a source of 1, in every sector.
     units: Vec<Vec<Monomial>>,
     /// Part of every sector.
     parts: Vec<u32>,
     /// How far from it fits take its functions even where they do not see it.
     zone: f64,
+    /// How near to the end of an edge fits do not take its functions: too many of their nodes are beyond.
+    blind: f64,
     held: bool,
     /// Its functions leave much beyond the zone, which is narrower than it should be: other singular points are near.
     narrow: bool,
@@ -77,12 +93,26 @@ pub(super) struct Vertex {
     ambiguous: bool,
 }
 
+/// A column: a function of the vertex, or the constant, times `sum_j factors_j r^(2j) z^(power-2j)` along an edge.
+#[derive(Debug)]
+struct Term {
+    function: Option<usize>,
+    power: usize,
+    factors: Vec<f64>,
+}
+
+/// A vertex, or an edge, that polynomials have to do for, and up to which distance.
+#[derive(Debug)]
+struct Unserved {
+    local: Local,
+    distance: f64,
+}
+
 /// All vertices that are served, and what is known of those that are not.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     served: Vec<Vertex>,
-    /// Places and distances within which polynomials have to do although the solution is singular.
-    unserved: Vec<([f64; 2], f64)>,
+    unserved: Vec<Unserved>,
     /// Every vertex whose solution is no polynomial.
     pub(super) corners: Vec<Corner>,
 }
@@ -98,9 +128,6 @@ impl Vertices {
         unknowns: &Unknowns,
         nodes: &CellList<'_, D>,
     ) -> Self {
-        if D != 2 {
-            return Self::default();
-        }
         let degree = params.degree();
         let mut all = Self::default();
         let mut source = SourcePolynomials {
@@ -110,55 +137,65 @@ impl Vertices {
         let data = CornerData::from(problem);
         let known = problem.dirichlet();
         for local in local_problems(&data, degree as f64 + AT_VERTEX) {
-            let (at, clear, exponent) = (local.at.to_vec(), local.clear, local.broken_exponent());
-            let report = |exponent: f64, obstacle: Option<Obstacle>| Corner {
-                at: at.clone(),
-                exponent,
-                clear,
-                obstacle,
-            };
-            let spacing = nodes.nearest_one(&in_space(local.at)).map(|j| problem.cloud.spacing()[j as usize]);
-            let wanted = ZONE * degree as f64 * spacing.unwrap_or(0.0);
+            let exponent = local.broken_exponent();
+            let nearest = nodes.nearest_one(&local.in_space(local.at));
+            let spacing = nearest.map_or(0.0, |j| problem.cloud.spacing()[j as usize]);
+            let wanted = ZONE * degree as f64 * spacing;
             match Vertex::new(problem, params, unknowns, nodes, local.clone(), &known, &mut source) {
                 Ok(mut vertex) => {
                     if let Some(power) =
                         vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64)
                     {
-                        if vertex.zone < wanted && power < SEVERE {
-                            all.unserved.push((local.at, BEYOND * wanted));
+                        if vertex.is_edge() {
+                            // Where an edge ends its functions are not those of the solution.
+                            let distance = BALANCED_BESIDE_EDGE * spacing;
+                            all.unserved.push(Unserved { local: local.clone(), distance });
+                        } else if vertex.zone < wanted && power < SEVERE {
+                            all.unserved.push(Unserved { local: local.clone(), distance: BEYOND * wanted });
                             vertex.narrow = power >= LEAST_BALANCED && !vertex.ambiguous;
                         }
-                        all.corners.push(report(power, None));
+                        all.corners.push(local.corner(power, None));
                         all.served.push(vertex);
                     }
                 }
                 Err(obstacle) => {
                     let power = crate::corners::broken_power(&data, &local, params.order);
                     if power.is_some_and(|power| power < SEVERE) {
-                        all.unserved.push((local.at, wanted));
+                        let is_edge = local.along.is_some();
+                        let distance = if is_edge { BALANCED_BESIDE_EDGE * spacing } else { wanted };
+                        all.unserved.push(Unserved { local: local.clone(), distance });
                     }
-                    all.corners.extend(power.map(|power| report(power, Some(obstacle))));
+                    all.corners.extend(power.map(|power| local.corner(power, Some(obstacle))));
                 }
             }
         }
+        all.corners.extend(rims(&data, params.order));
         all
     }
 
     /// Whether polynomials round a point are those of a fit near a singular solution that no functions serve: what they leave is to be
     /// balanced at least.
     pub(super) fn leaves_much<const D: usize>(&self, x: &[f64; D]) -> bool {
-        self.unserved.iter().any(|(at, distance)| (x[0] - at[0]).hypot(x[1] - at[1]) < *distance)
+        self.unserved.iter().any(|near| near.local.distance(x) < near.distance)
     }
 
     /// The vertex whose functions a fit round a point takes, wherever its nodes are.
     pub(super) fn near<const D: usize>(&self, x: &[f64; D]) -> Option<usize> {
-        self.nearest(x).filter(|&(k, distance)| distance < self.served[k].zone).map(|(k, _)| k)
+        let takes = |&(k, distance): &(usize, f64)| {
+            let vertex = &self.served[k];
+            let to_end = vertex.local.to_open_end(x);
+            distance < vertex.zone && distance < TOWARDS_END * to_end && to_end >= vertex.blind
+        };
+        self.nearest(x).filter(takes).map(|(k, _)| k)
     }
 
     /// The vertex that a stencil of this radius round a point contains.
     pub(super) fn within<const D: usize>(&self, x: &[f64; D], radius: f64) -> Option<usize> {
         self.nearest(x)
-            .filter(|&(k, distance)| distance <= radius && distance < self.served[k].local.clear)
+            .filter(|&(k, distance)| {
+                let Vertex { local, blind, .. } = &self.served[k];
+                distance <= radius && distance < local.clear && local.to_open_end(x) >= *blind
+            })
             .map(|(k, _)| k)
     }
 
@@ -193,7 +230,7 @@ impl SourcePolynomials {
     fn of<const D: usize>(
         &mut self,
         source: Option<&Field<D>>,
-        (at, radius): ([f64; 2], f64),
+        (local, radius): (&Local, f64),
         response: f64,
     ) -> Result<(Vec<Monomial>, f64), Obstacle> {
         let Some(field) = source else { return Ok((Vec::new(), 0.0)) };
@@ -201,7 +238,8 @@ impl SourcePolynomials {
             return Ok((square(0.25 * response * f), 0.0));
         }
         let made = self.made.get_or_insert_with(|| Particular::new(self.degree));
-        let place = |z: &[f64; 2]| in_space([at[0] + radius * z[0], at[1] + radius * z[1]]);
+        let at = local.at;
+        let place = |z: &[f64; 2]| local.in_space([at[0] + radius * z[0], at[1] + radius * z[1]]);
         let points: Vec<[f64; D]> = made.samples.iter().map(place).collect();
         let mut values = vec![0.0; points.len()];
         field.eval(&points, &mut values);
@@ -248,8 +286,9 @@ impl Vertex {
         if let Some(obstacle) = local.obstacle {
             return Err(obstacle);
         }
-        let at: [f64; D] = in_space(local.at);
-        let functions = local.exponents.iter().map(|e| e.1).sum::<usize>() + 1;
+        let at: [f64; D] = local.in_space(local.at);
+        let terms = terms(&local, params.degree());
+        let functions = terms.len();
         let mut found = Vec::new();
         nodes.within(&at, local.clear, &mut found);
         if (found.len() as f64) < NODES_PER_FUNCTION * functions as f64 {
@@ -258,11 +297,11 @@ impl Vertex {
         // The part of a sector is that of the node of its region nearest to its middle.
         let parts: Option<Vec<u32>> = (0..local.labels.len())
             .map(|k| {
-                let middle: [f64; D] = in_space(local.inside(k, INSIDE * local.clear));
+                let middle: [f64; D] = local.in_space(local.inside(k, INSIDE * local.clear));
                 let of_label = |j: &&u32| problem.labels[**j as usize] == local.labels[k];
                 let in_sector = |j: &&u32| {
                     let x = &problem.cloud.points()[**j as usize];
-                    local.place(&[x[0], x[1]], |s| s == k).0 == k
+                    local.place(&local.coordinates(x).0, |s| s == k).0 == k
                 };
                 let squared = |j: &u32| {
                     let x = &problem.cloud.points()[*j as usize];
@@ -275,11 +314,12 @@ impl Vertex {
             .collect();
         let parts = parts.ok_or(Obstacle::Spacing)?;
         let spacing = nodes.nearest_one(&at).map_or(local.clear, |j| problem.cloud.spacing()[j as usize]);
-        let stencil = (params.stencil_nodes(D) as f64 / std::f64::consts::PI).sqrt() * spacing;
+        let stencil = radius_of_ball::<D>(params.stencil_nodes(D)) * spacing;
         let widest = (local.clear - stencil).max(SHARE_OF_CLEAR * local.clear);
         let widest = (ZONE * params.degree() as f64 * spacing).min(widest);
         let of_part = |of: &[f64]| parts.iter().map(|&part| of[part as usize]).collect::<Vec<f64>>();
         let (scale, offset) = (of_part(&unknowns.scale), of_part(&unknowns.offset));
+        let blind = if local.along.is_some() { BLIND * stencil } else { 0.0 };
         // Where data are no polynomials over the whole zone, a smaller one is better.
         let mut best: Option<(f64, Scales, LocalSolution)> = None;
         for share in SHARES_OF_ZONE {
@@ -289,7 +329,7 @@ impl Vertex {
                 .map(|k| {
                     let field = problem.materials[local.labels[k] as usize].source.as_ref();
                     let response = -radius * radius / (local.wedge.sectors[k].eta * scale[k]);
-                    source.of(field, (local.at, radius), response)
+                    source.of(field, (&local, radius), response)
                 })
                 .collect::<Result<Vec<_>, _>>()?;
             let (sources, errors): (Vec<_>, Vec<f64>) = sources.into_iter().unzip();
@@ -309,16 +349,15 @@ impl Vertex {
         let units = (0..parts.len()).map(|k| square(0.25 * response(k))).collect();
         let (held, ambiguous) = (local.wedge.is_held(), solution.value_depends_on_direction());
         // Nodes that take the functions say of each other that these solve their rows, whatever the factors: others have to hold them.
-        let distance = |x: &[f64; D]| (x[0] - local.at[0]).hypot(x[1] - local.at[1]);
         let mut near = Vec::new();
         let mut holds = |&&j: &&u32| {
             let x = &problem.cloud.points()[j as usize];
-            let away = distance(x);
+            let away = local.distance(x);
             known[j as usize].is_none() && away >= zone && {
                 let seen = nodes.nearest(x, params.stencil_nodes(D), &mut near).last();
                 seen.is_some_and(|last| {
                     let last = &problem.cloud.points()[last as usize];
-                    (last[0] - x[0]).hypot(last[1] - x[1]) < away
+                    (0..D).map(|k| (last[k] - x[k]).powi(2)).sum::<f64>() < away * away
                 })
             }
         };
@@ -326,7 +365,19 @@ impl Vertex {
         if found.iter().filter(&mut holds).take(enough).count() < enough {
             return Err(Obstacle::Spacing);
         }
-        Ok(Self { local, solution, scales, units, parts, zone, held, narrow: false, ambiguous })
+        Ok(Self {
+            local,
+            solution,
+            scales,
+            terms,
+            units,
+            parts,
+            zone,
+            blind,
+            held,
+            narrow: false,
+            ambiguous,
+        })
     }
 
     /// Whether other singular points are so near that its functions alone do not conserve heat, and fluxes beside it can be integrated.
@@ -336,12 +387,31 @@ impl Vertex {
 
     /// How far a point is away.
     pub(super) fn distance<const D: usize>(&self, x: &[f64; D]) -> f64 {
-        (x[0] - self.local.at[0]).hypot(x[1] - self.local.at[1])
+        self.local.distance(x)
     }
 
-    /// Whether a point is so near that nothing but the rays of the vertex is between.
-    pub(super) fn reaches<const D: usize>(&self, x: &[f64; D]) -> bool {
-        self.distance(x) <= self.local.clear
+    /// Whether a point of a part is so near that nothing but the rays of the vertex is between.
+    pub(super) fn reaches<const D: usize>(&self, x: &[f64; D], part: u32) -> bool {
+        self.distance(x) <= self.local.clear && {
+            self.local.along.is_none() || {
+                let (across, _) = self.local.coordinates(x);
+                let (sector, ..) = self.local.place(&across, |k| self.parts[k] == part);
+                self.parts[sector] == part
+            }
+        }
+    }
+
+    /// Whether a face of the boundary with this normal ends the edge: the functions know nothing of what holds there.
+    pub(super) fn is_ended_by<const D: usize>(&self, normal: &[f64; D]) -> bool {
+        self.local.along.is_some() && {
+            let axis: [f64; D] = self.local.frame.vector([0.0; 2], 1.0);
+            (0..D).map(|k| axis[k] * normal[k]).sum::<f64>().abs() > ACROSS
+        }
+    }
+
+    /// Whether it is an edge in space.
+    pub(super) fn is_edge(&self) -> bool {
+        self.local.along.is_some()
     }
 
     /// Whether a value at a point says something.
@@ -356,45 +426,54 @@ impl Vertex {
 
     /// Columns of a fit.
     pub(super) fn columns(&self) -> usize {
-        self.solution.functions.len() + usize::from(!self.held)
+        self.terms.len()
     }
 
-    /// Writes values and gradients of the functions at a point of a part, for distances in units of `reach`; the constant, where there is
-    /// one, is `constant`. Returns what the data and the sources add, and what a source of 1 does.
+    /// Writes values and gradients of the functions at a point of a part, for distances in units of `reach` and places along an edge from
+    /// that of `center`; the constant, where there is one, is `constant`. Returns what the data and the sources add, and what a source of 1
+    /// does.
     pub(super) fn evaluate<const D: usize>(
         &self,
         part: u32,
-        x: &[f64; D],
+        (x, center): (&[f64; D], &[f64; D]),
         (reach, constant): (f64, f64),
         jet: &mut Jet<D>,
     ) -> [Valued<D>; 2] {
-        let (sector, r, z) = self.local.place(&[x[0], x[1]], |k| self.parts[k] == part);
+        let frame = &self.local.frame;
+        let ((across, along), (_, middle_along)) =
+            (self.local.coordinates(x), self.local.coordinates(center));
+        let along = (along - middle_along) / reach;
+        let (sector, r, z) = self.local.place(&across, |k| self.parts[k] == part);
         let middle = {
             let [a, b] = self.local.inside(sector, 1.0);
             (b - self.local.at[1]).atan2(a - self.local.at[0])
         };
         let (sin, cos) = (middle + z).sin_cos();
-        let cartesian = |[_, radial, around]: [f64; 3], unit: f64| -> [f64; D] {
-            in_space([(radial * cos - around * sin) / unit, (radial * sin + around * cos) / unit])
+        let cartesian = |[radial, around, along]: [f64; 3], unit: f64| -> [f64; D] {
+            frame.vector(
+                [(radial * cos - around * sin) / unit, (radial * sin + around * cos) / unit],
+                along / unit,
+            )
         };
         jet.values.clear();
         jet.gradients.clear();
-        if !self.held {
-            jet.values.push(constant);
-            jet.gradients.push([0.0; D]);
-        }
-        for function in &self.solution.functions {
-            let polar = function.at(sector, r / reach, z);
-            jet.values.push(polar[0]);
-            jet.gradients.push(cartesian(polar, reach));
+        for Term { function, power, factors } in &self.terms {
+            let [value, radial, around] = match function {
+                None => [constant, 0.0, 0.0],
+                Some(k) => self.solution.functions[*k].at(sector, r / reach, z),
+            };
+            let [by, by_radial, by_along] = along_edge(*power, factors, r / reach, along);
+            jet.values.push(value * by);
+            jet.gradients
+                .push(cartesian([radial * by + value * by_radial, around * by, value * by_along], reach));
         }
         let radius = self.scales.radius;
         let mut given = [(0.0, [0.0; D]); 2];
         let forced = self.solution.forced.iter().map(|f| (0, f)).chain([(1, &self.solution.unit)]);
         for (which, function) in forced {
-            let polar = function.at(sector, r / radius, z);
-            given[which].0 += polar[0];
-            let slope = cartesian(polar, radius);
+            let [value, radial, around] = function.at(sector, r / radius, z);
+            given[which].0 += value;
+            let slope = cartesian([radial, around, 0.0], radius);
             given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
         }
         let xi = [r * cos / radius, r * sin / radius];
@@ -405,12 +484,62 @@ impl Vertex {
                 given[which].0 += factor * xi[0].powi(i) * xi[1].powi(j);
                 let slope_x = if i > 0 { f64::from(i) * xi[0].powi(i - 1) * xi[1].powi(j) } else { 0.0 };
                 let slope_y = if j > 0 { f64::from(j) * xi[0].powi(i) * xi[1].powi(j - 1) } else { 0.0 };
-                let slope: [f64; D] = in_space([factor * slope_x / radius, factor * slope_y / radius]);
+                let slope: [f64; D] =
+                    frame.vector([factor * slope_x / radius, factor * slope_y / radius], 0.0);
                 given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
             }
         }
         given
     }
+}
+
+/// The columns of fits of a degree: in the plane the constant, unless u is prescribed, and all functions; along an edge the same with all
+/// powers that the degree leaves.
+fn terms(local: &Local, degree: usize) -> Vec<Term> {
+    let powers = local.exponents.iter().flat_map(|&(power, count)| vec![power; count]);
+    let constant = (!local.wedge.is_held()).then_some((None, 0.0));
+    let functions = constant.into_iter().chain(powers.enumerate().map(|(k, power)| (Some(k), power)));
+    let most = (degree as f64).max(local.wedge.exponent_of(2.0 * degree as f64 + 1.0)) + AT_VERTEX;
+    let of_function = |(function, lambda): (Option<usize>, f64)| {
+        let highest = if local.along.is_some() { (most - lambda).max(0.0) as usize } else { 0 };
+        (0..=highest).map(move |power| Term { function, power, factors: harmonic_factors(lambda, power) })
+    };
+    functions.flat_map(of_function).collect()
+}
+
+/// Factors of `r^(2j) z^(k-2j)` that make `r^lambda Phi(theta) z^k` harmonic: `c_0 = 1`,
+/// `c_(j+1) = -c_j (k-2j)(k-2j-1) / (4 (j+1)(lambda+j+1))`.
+fn harmonic_factors(lambda: f64, power: usize) -> Vec<f64> {
+    let mut factors = vec![1.0];
+    for j in 0..power / 2 {
+        let left = (power - 2 * j) as f64;
+        let step = left * (left - 1.0) / (4.0 * (j + 1) as f64 * (lambda + (j + 1) as f64));
+        factors.push(-step * factors[j]);
+    }
+    factors
+}
+
+/// `sum_j factors_j r^(2j) z^(k-2j)` with its derivatives in r and z.
+fn along_edge(power: usize, factors: &[f64], r: f64, z: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (j, factor) in factors.iter().enumerate() {
+        let (of_r, of_z) = (2 * j as i32, (power - 2 * j) as i32);
+        let (in_r, in_z) = (r.powi(of_r), z.powi(of_z));
+        sum[0] += factor * in_r * in_z;
+        if of_r > 0 {
+            sum[1] += factor * f64::from(of_r) * r.powi(of_r - 1) * in_z;
+        }
+        if of_z > 0 {
+            sum[2] += factor * in_r * f64::from(of_z) * z.powi(of_z - 1);
+        }
+    }
+    sum
+}
+
+/// Radius, in spacings, of a disc or ball of so many nodes.
+fn radius_of_ball<const D: usize>(nodes: usize) -> f64 {
+    let each = nodes as f64 / std::f64::consts::PI;
+    if D == 3 { (0.75 * each).cbrt() } else { each.sqrt() }
 }
 
 /// A functional of the polynomial in z of what [`Vertex::evaluate`] returns, for a stencil of this radius.

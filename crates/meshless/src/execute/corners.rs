@@ -36,7 +36,8 @@ pub(super) fn report(corners: &[Corner]) -> Vec<CornerReport> {
 
 /// The relative error that the corners leave which the method does not serve, about: `(h / L)^(2 lambda)`, the rate of every method
 /// that fits polynomials there (Strang and Fix, "An analysis of the finite element method", 1973, chapter 8), with the spacing h at
-/// the corner, and the distance L of the next one. Corners spoil the regions around them as much as the whole.
+/// the corner, and the distance L of the next one. The vertices at the ends of edges in space that are served leave h/L times that.
+/// Corners spoil the regions around them as much as the whole.
 pub(super) fn reason<const D: usize>(scene: &Scene, problem: &Problem<'_, D>, corners: &[Corner]) -> Reason {
     let points = problem.cloud.points();
     let of_corner = |corner: &Corner| {
@@ -46,11 +47,12 @@ pub(super) fn reason<const D: usize>(scene: &Scene, problem: &Problem<'_, D>, co
         let power = corner.exponent;
         // Two values that meet are smeared over a spacing.
         let rate = if power == 0.0 { 1.0 } else { 2.0 * power };
+        let rate = if corner.obstacle.is_none() { rate + 1.0 } else { rate };
         let whole = (power - power.round().max(1.0)).abs();
         let strength = if whole == 0.0 { 1.0 } else { (WEAK * whole).min(1.0) };
         Some(strength * ratio.powf(rate))
     };
-    let left = corners.iter().filter(|corner| corner.obstacle.is_some()).filter_map(of_corner);
+    let left = corners.iter().filter(|corner| corner.obstacle.is_some() || corner.ends).filter_map(of_corner);
     let whole = left.reduce(f64::max);
     let regions = scene.regions.iter().filter_map(|region| Some((region.name.clone(), whole?)));
     Reason { by: "corners", whole, regions: regions.collect() }

@@ -17,7 +17,6 @@ use meshless_geometry::gauss;
 
 use super::maker::{Maker, Row};
 use super::params::Conservation;
-use crate::corners::{CornerData, corners};
 use crate::{InterfaceFlux, MethodError, parallel};
 use faces::{Beyond, Face, Faces};
 use flux::Flux;
@@ -35,10 +34,10 @@ pub(super) fn replace<const D: usize>(
     for row in rows.iter() {
         wanted[row.node] = match maker.params.conservation {
             Conservation::None => false,
-            // Functions of a vertex are exact there, and fluxes beside it singular.
-            Conservation::Crossing => match row.vertex {
-                Some(vertex) => maker.vertices.get(vertex).is_narrow(),
-                None => row.crosses || maker.vertices.leaves_much(&maker.problem.cloud.points()[row.node]),
+            // Functions of a vertex are exact there, and fluxes beside it singular; those of an edge end where that does.
+            Conservation::Crossing => match row.vertex.map(|vertex| maker.vertices.get(vertex)) {
+                Some(vertex) if !vertex.is_edge() => vertex.is_narrow(),
+                _ => row.crosses || maker.vertices.leaves_much(&maker.problem.cloud.points()[row.node]),
             },
             Conservation::All => true,
         };
@@ -61,7 +60,7 @@ pub(super) fn replace<const D: usize>(
 /// Whether slopes are infinite at edges in space, along which their integrals find no size. In the plane those stay: beside a vertex without
 /// functions what they leave over says how far the solution is off.
 fn has_edges<const D: usize>(maker: &Maker<'_, D>) -> bool {
-    D == 3 && !corners(&CornerData::from(maker.problem), maker.params.order).is_empty()
+    D == 3 && !maker.vertices.corners.is_empty()
 }
 
 /// The flux through the interface of every two regions, where the fluxes of all of its faces are known.

@@ -1,11 +1,11 @@
-//! Edges in space at which solutions are singular: those of boxes and of the caps of cylinders.
+//! The rims of cylinders: curved edges in space at which solutions are singular.
 //!
-//! Across an edge the solution is that of the plane at right angles to it. Its exponent is found there; corner functions serve no
-//! edge yet.
+//! Across an edge the leading term is that of the plane at right angles to it. Its exponent is found there; no functions serve a
+//! curved edge.
 
 use std::f64::consts::TAU;
 
-use meshless_geometry::{Aabb, Cylinder, FaceId, Shape};
+use meshless_geometry::{Cylinder, FaceId, Shape};
 
 use super::wedge::{End, Sector, Wedge};
 use super::{Corner, CornerData, Obstacle};
@@ -29,18 +29,19 @@ const MOST_EDGES: usize = 5_000;
 /// A point of an edge: where, two directions across it, the length of the edge.
 type Across = ([f64; 3], [[f64; 3]; 2], f64);
 
-/// The edges whose solutions have a power below `order` that is no polynomial; one point of each.
-pub(super) fn edges<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Vec<Corner> {
+/// The rims whose solutions have a power below `order` that is no polynomial; one point of each.
+pub(crate) fn rims<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Vec<Corner> {
+    if D != 3 {
+        return Vec::new();
+    }
     let mut shapes: Vec<&Shape<D>> = vec![data.domain.outer()];
     shapes.extend(data.domain.curved_faces().into_iter().map(|(_, shape, _)| shape));
     shapes.extend((0..data.regions.len() as u16).filter_map(|label| data.regions.shape(label)));
     let leaves = shapes.into_iter().flat_map(Shape::leaves).map(|(leaf, _)| leaf);
     let mut all: Vec<Across> = Vec::new();
     for leaf in leaves {
-        match leaf {
-            Shape::Box(b) => of_box(b, &mut all),
-            Shape::Cylinder(c) => of_cylinder(c, &mut all),
-            _ => {}
+        if let Shape::Cylinder(cylinder) = leaf {
+            of_cylinder(cylinder, &mut all);
         }
     }
     if all.len() > MOST_EDGES {
@@ -51,25 +52,11 @@ pub(super) fn edges<const D: usize>(data: &CornerData<'_, D>, order: usize) -> V
         let Some(exponent) = exponent(data, across, order as f64) else { continue };
         let at = across.0.to_vec();
         if found.iter().all(|known| known.at != at) {
-            found.push(Corner { at, exponent, clear: 0.5 * across.2, obstacle: Some(Obstacle::Method) });
+            let (clear, obstacle) = (0.5 * across.2, Some(Obstacle::Curved));
+            found.push(Corner { at, exponent, clear, obstacle, ends: false });
         }
     }
     found
-}
-
-fn of_box<const D: usize>(b: &Aabb<D>, all: &mut Vec<Across>) {
-    let [min, max] = [&b.min, &b.max].map(|x| -> [f64; 3] { std::array::from_fn(|k| x[k]) });
-    for axis in 0..3 {
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let unit = |k: usize| -> [f64; 3] { std::array::from_fn(|d| f64::from(u8::from(d == k))) };
-        let length = (0..3).map(|k| max[k] - min[k]).fold(f64::INFINITY, f64::min);
-        for corner in 0..4 {
-            let mut at: [f64; 3] = std::array::from_fn(|k| 0.5 * (min[k] + max[k]));
-            at[i] = if corner % 2 == 0 { min[i] } else { max[i] };
-            at[j] = if corner / 2 == 0 { min[j] } else { max[j] };
-            all.push((at, [unit(i), unit(j)], length));
-        }
-    }
 }
 
 fn of_cylinder<const D: usize>(cylinder: &Cylinder<D>, all: &mut Vec<Across>) {
