@@ -7,8 +7,10 @@ use meshless_neighbors::{CellList, NeighborError};
 use super::pieces::Rule;
 use crate::execute::Boundary;
 
-/// How far beside a surface its sides are told, in spacings: twice the distance at which a node counts as on it.
+/// How far beside a surface its sides are told, in the least of all spacings, twice the distance at which a node counts as on it; and over
+/// the diameter of the domain at least: rounding.
 const BESIDE: f64 = 2.0 * TIE;
+const LEAST_BESIDE: f64 = 1e-14;
 
 /// Cells of a grid in which level sets are looked for, a node.
 const CELLS: f64 = 16.0;
@@ -91,7 +93,7 @@ fn walls<const D: usize>(
             if covered.holds(element) {
                 return None;
             }
-            let step = BESIDE * (rule.spacing)(&element.at);
+            let step = step_of(problem, rule);
             let inside = [-step, step].map(|t| domain.contains(&beside(element, t), 0.0));
             let along = match inside {
                 [true, false] => true,
@@ -104,7 +106,7 @@ fn walls<const D: usize>(
         for patch in patches {
             for (element, (along, entry, region)) in rule.points(patch, &kind) {
                 let out = if along { 1.0 } else { -1.0 };
-                let step = BESIDE * (rule.spacing)(&element.at);
+                let step = step_of(problem, rule);
                 let element = Element { normal: element.normal.map(|n| out * n), ..element };
                 walls.push(Wall {
                     entry,
@@ -143,7 +145,7 @@ fn seams_of<const D: usize>(
         if covered.holds(element) {
             return None;
         }
-        let step = BESIDE * (rule.spacing)(&element.at);
+        let step = step_of(problem, rule);
         let places = [-step, step].map(|t| beside(element, t));
         let sides = [0, 1].map(|k| problem.regions.label(&places[k], 0.0));
         // Where two shapes have a surface in common it is that of the one named first.
@@ -156,7 +158,7 @@ fn seams_of<const D: usize>(
     };
     for patch in patches {
         for (element, (sides, soft)) in rule.points(patch, &kind) {
-            let step = BESIDE * (rule.spacing)(&element.at);
+            let step = step_of(problem, rule);
             let from = beside(&element, if soft == 0 { -step } else { step });
             let turned = sides[0] > sides[1];
             let turn = if turned { -1.0 } else { 1.0 };
@@ -211,6 +213,10 @@ fn leaf_patches<'a, const D: usize>(
         (leaves[k].patches(bounds, size), Covered { before, distance })
     };
     (0..leaves.len()).map(of_leaf).collect()
+}
+
+fn step_of<const D: usize>(problem: &Problem<'_, D>, rule: &Rule<'_, D>) -> f64 {
+    (BESIDE * rule.least).max(LEAST_BESIDE * problem.domain.bounds().diameter())
 }
 
 fn beside<const D: usize>(element: &Element<D>, t: f64) -> [f64; D] {
