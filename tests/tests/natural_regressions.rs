@@ -404,22 +404,23 @@ fn estimated(text: &str) -> Report {
     execute(&scene, &plan, &mut Silent).expect("the scene can be solved").report
 }
 
-/// 5.12 is made in a cube; with collocation 1.57 of it left the box, with a diffusivity of 1e4 12.5. u is that of hp-FEM: edges in space have no
-/// functions of their own, so that it is coarse, and the estimate has to say so.
+/// 5.12 is made in a cube; with collocation 1.57 of it left the box, with a diffusivity of 1e4 12.5. u is that of hp-FEM: on the coarse cloud
+/// edges are too short for functions of their own, on the finer one these make it five times more accurate (0.06 without), and the estimate has
+/// to say so.
 #[test]
 fn heat_that_is_made_in_a_cube_leaves_it() {
-    for eta in [10.0, 1e4] {
-        let report = estimated(&desk::heated_cube(eta, 0.2, 1));
+    for (eta, spacing, bound) in [(10.0, 0.2, 0.2), (1e4, 0.2, 0.2), (10.0, 0.12, 0.015), (1e4, 0.12, 0.02)] {
+        let report = estimated(&desk::heated_cube(eta, spacing, 1));
         let balance = report.balance.as_ref().expect("every report has a balance");
         let through = balance.regions["part"].interfaces;
         for flux in [balance.into[0].flux, through] {
-            assert!((flux + 5.12).abs() < 1e-2, "eta {eta}: {flux}");
+            assert!((flux + 5.12).abs() < 1e-2, "eta {eta}, spacing {spacing}: {flux}");
         }
         let estimate = report.estimate.l2.expect("an estimate");
         let figures = references::of("heated-cube", eta).filter(|figure| figure.quantity == Quantity::Value);
         for (figure, value) in figures.zip(probes(&report)) {
             let error = (value / figure.value - 1.0).abs();
-            assert!(error < 0.2 && error < estimate, "eta {eta}, {figure:?}: {value}, estimate {estimate}");
+            assert!(error < bound && error < estimate, "eta {eta}, {figure:?}: {value}, estimate {estimate}");
         }
     }
 }

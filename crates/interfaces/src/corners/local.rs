@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use meshless_geometry::{Edge, FaceId, Frame, Vertex};
 use nalgebra::{DMatrix, DVector};
 
+use super::rims::condition_at;
 use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
 use super::{Corner, CornerData};
 use crate::Condition;
@@ -17,8 +18,14 @@ const BESIDE: f64 = 1e-3;
 const DEGREES_BEYOND: usize = 4;
 const HIGHEST_DEGREE: usize = 14;
 
+/// Components of directions below this are rounding: on the plane `x = 0` a value x is zero.
+const NO_COMPONENT: f64 = 1e-15;
+
 /// How far from whole numbers an exponent may be for its function to count as a polynomial.
 const WHOLE: f64 = 1e-7;
+
+/// Powers from here on are weak.
+const WEAK: f64 = 2.0;
 
 /// Part of the largest coefficient of data below which one is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -90,13 +97,23 @@ impl Obstacle {
 /// A monomial of a polynomial in the coordinates from a vertex: exponents, factor.
 pub(crate) type Monomial = ([u8; 2], f64);
 
+/// How an edge in space ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Tip {
+    /// In a vertex.
+    Vertex,
+    /// At a plane of the boundary at right angles to it.
+    Wall,
+    /// At such a plane through which nothing flows: its functions are even there.
+    Symmetry,
+}
+
 /// The extent of an edge in space along itself.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Along {
-    /// Half its length.
-    pub(crate) half_length: f64,
-    /// Whether it ends at a plane of the boundary at right angles to it, at the lower end and at the upper one.
-    pub(crate) at_wall: [bool; 2],
+    half_length: f64,
+    /// At the lower end, and at the upper one.
+    tips: [Tip; 2],
 }
 
 /// A vertex in the plane, or what is across an edge in space, as a local problem.
@@ -203,20 +220,33 @@ impl Local {
         }
     }
 
-    /// Whether it is an edge that ends in a vertex, near which its functions are not those of the solution.
-    pub(crate) fn has_open_end(&self) -> bool {
-        self.along.is_some_and(|along| along.at_wall.contains(&false))
+    /// Whether it is an edge with an end near which its functions are not those of the solution.
+    fn has_open_end(&self) -> bool {
+        self.along.is_some_and(|along| along.tips.iter().any(|tip| *tip != Tip::Symmetry))
     }
 
-    /// How far a point is, along an edge, from where that ends in a vertex; negative beyond.
-    pub(crate) fn to_open_end<const D: usize>(&self, x: &[f64; D]) -> f64 {
+    /// Length of an edge over the number of its ends that are none of symmetry; as long as can be without.
+    pub(crate) fn length_an_end(&self) -> f64 {
         self.along.map_or(f64::INFINITY, |along| {
+            let ends = along.tips.iter().filter(|tip| **tip != Tip::Symmetry).count();
+            2.0 * along.half_length / ends as f64
+        })
+    }
+
+    /// Whether the functions of an edge are those of the solution at a point as far as its ends are concerned: farther from a vertex than
+    /// `blind`, which may be little, and farther from a wall than a stencil reaches.
+    pub(crate) fn is_amid<const D: usize>(&self, x: &[f64; D], (blind, stencil): (f64, f64)) -> bool {
+        self.along.is_none_or(|along| {
             let (_, z) = self.coordinates(x);
-            let to = |side: usize| match along.at_wall[side] {
-                true => f64::INFINITY,
-                false => along.half_length + if side == 0 { z } else { -z },
+            let is_within = |(tip, sign): (&Tip, f64)| {
+                let to_end = along.half_length + sign * z;
+                match tip {
+                    Tip::Vertex => to_end >= blind,
+                    Tip::Wall => to_end >= stencil,
+                    Tip::Symmetry => true,
+                }
             };
-            to(0).min(to(1))
+            along.tips.iter().zip([1.0, -1.0]).all(is_within)
         })
     }
 
@@ -236,15 +266,30 @@ impl Local {
         edge: &Edge,
         known: &mut KnownWedges,
     ) -> Vec<Self> {
-        let along = Along { half_length: edge.half_length, at_wall: edge.at_wall };
         let mut all = Self::all(problem, (&edge.frame, &edge.around), known);
         for local in &mut all {
-            local.along = Some(along);
+            let tips = [0, 1].map(|end| match edge.at_wall[end] {
+                false => Tip::Vertex,
+                true if local.is_insulated(problem, [-1.0, 1.0][end] * edge.half_length) => Tip::Symmetry,
+                true => Tip::Wall,
+            });
+            local.along = Some(Along { half_length: edge.half_length, tips });
             if local.obstacle.is_none() && local.varies_along(problem, edge.half_length) {
                 local.obstacle = Some(Obstacle::VariesAlong);
             }
         }
         all
+    }
+
+    /// Whether nothing flows through the wall at which an edge ends.
+    fn is_insulated<const D: usize>(&self, problem: &CornerData<'_, D>, end: f64) -> bool {
+        DISTANCES.iter().map(|part| part * self.clear).all(|r| {
+            (0..self.labels.len()).all(|k| {
+                let x: [f64; D] = self.frame.place(self.inside(k, r), end);
+                let condition = condition_at(problem, &x, ON_RAY * self.clear);
+                condition.and_then(|c| c.as_flux(1.0)) == Some((0.0, 0.0))
+            })
+        })
     }
 
     /// Whether sources or data change along an edge of this half length.
@@ -387,6 +432,14 @@ impl Local {
         self.exponents.iter().map(|e| e.0).find(|power| (power - power.round()).abs() > WHOLE)
     }
 
+    /// The smallest power at which a solution is no polynomial in the sectors. Logarithms count in the plane only: in space they are at
+    /// every edge of a heated box, and as weak as `r^2 ln r`.
+    pub(crate) fn broken_by(&self, solution: &LocalSolution) -> Option<f64> {
+        let exponent = self.broken_exponent();
+        let power = solution.broken_power(exponent);
+        if self.along.is_some() && power.is_some_and(|power| power >= WEAK) { exponent } else { power }
+    }
+
     /// Sector, distance and angle from the sector's middle of a point; of a point on a ray, the sector of which `prefers` holds.
     pub(crate) fn place(&self, x: &[f64; 2], prefers: impl Fn(usize) -> bool) -> (usize, f64, f64) {
         let (dx, dy) = (x[0] - self.at[0], x[1] - self.at[1]);
@@ -429,6 +482,7 @@ impl Local {
     fn on_ray(&self, ray: usize, distance: f64) -> [f64; 2] {
         let turned: f64 = self.wedge.sectors[..ray].iter().map(|s| s.opening).sum();
         let (sin, cos) = (self.start + turned).sin_cos();
+        let [sin, cos] = [sin, cos].map(|x| if x.abs() < NO_COMPONENT { 0.0 } else { x });
         [self.at[0] + distance * cos, self.at[1] + distance * sin]
     }
 

@@ -124,7 +124,7 @@ pub(crate) fn broken_power<const D: usize>(
     let scales = Scales::plain(data, local);
     let solution = local.solve(data, &scales, order).ok();
     let power = match &solution {
-        Some(solution) => solution.broken_power(exponent),
+        Some(solution) => local.broken_by(solution),
         None => exponent,
     };
     power.filter(|power| *power < order as f64)

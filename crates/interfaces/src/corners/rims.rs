@@ -134,14 +134,22 @@ fn exponent<const D: usize>(
 
 /// What holds on the boundary at a point.
 fn end_at<const D: usize>(data: &CornerData<'_, D>, x: &[f64; D], step: f64) -> End {
+    match condition_at(data, x, step) {
+        Some(Condition::Dirichlet(_)) => End::Dirichlet,
+        _ => End::Flux,
+    }
+}
+
+/// The condition on the face of the boundary that a point is nearest to, within a distance.
+pub(super) fn condition_at<const D: usize>(
+    data: &CornerData<'_, D>,
+    x: &[f64; D],
+    step: f64,
+) -> Option<Condition> {
     let faces = (0..data.domain.faces().len() as u16).map(FaceId);
     let feet = faces.filter_map(|face| {
         let foot = data.domain.project_to_face(face, x).ok().filter(|foot| foot.distance.abs() < step)?;
         data.boundary.condition(face, &foot.point).map(|condition| (foot.distance.abs(), condition))
     });
-    let near = feet.min_by(|a, b| a.0.total_cmp(&b.0));
-    match near {
-        Some((_, Condition::Dirichlet(_))) => End::Dirichlet,
-        _ => End::Flux,
-    }
+    feet.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, condition)| condition)
 }

@@ -34,9 +34,8 @@ const BEYOND: f64 = 2.0;
 const BALANCED_BESIDE_EDGE: f64 = 3.0;
 
 /// How near to the end of an edge, where that is a vertex, fits take its functions: farther from the end than this part of a stencil's
-/// radius, and not farther from the edge than this many times the distance from the end. Measured (`docs/corners.md`).
+/// radius. Measured (`docs/corners.md`).
 const BLIND: f64 = 0.25;
-const TOWARDS_END: f64 = 2.0;
 
 /// Exponents below this have fluxes that are too singular for a balance beside the vertex.
 const LEAST_BALANCED: f64 = 0.4;
@@ -84,8 +83,6 @@ pub(super) struct Vertex {
     parts: Vec<u32>,
     /// How far from it fits take its functions even where they do not see it.
     zone: f64,
-    /// How near to the end of an edge fits do not take its functions: too many of their nodes are beyond.
-    blind: f64,
     held: bool,
     /// Its functions leave much beyond the zone, which is narrower than it should be: other singular points are near.
     narrow: bool,
@@ -137,14 +134,13 @@ impl Vertices {
         let data = CornerData::from(problem);
         let known = problem.dirichlet();
         for local in local_problems(&data, degree as f64 + AT_VERTEX) {
-            let exponent = local.broken_exponent();
             let nearest = nodes.nearest_one(&local.in_space(local.at));
             let spacing = nearest.map_or(0.0, |j| problem.cloud.spacing()[j as usize]);
             let wanted = ZONE * degree as f64 * spacing;
             match Vertex::new(problem, params, unknowns, nodes, local.clone(), &known, &mut source) {
                 Ok(mut vertex) => {
                     if let Some(power) =
-                        vertex.solution.broken_power(exponent).filter(|p| *p < params.order as f64)
+                        local.broken_by(&vertex.solution).filter(|p| *p < params.order as f64)
                     {
                         if vertex.is_edge() {
                             // Where an edge ends its functions are not those of the solution.
@@ -181,20 +177,16 @@ impl Vertices {
 
     /// The vertex whose functions a fit round a point takes, wherever its nodes are.
     pub(super) fn near<const D: usize>(&self, x: &[f64; D]) -> Option<usize> {
-        let takes = |&(k, distance): &(usize, f64)| {
-            let vertex = &self.served[k];
-            let to_end = vertex.local.to_open_end(x);
-            distance < vertex.zone && distance < TOWARDS_END * to_end && to_end >= vertex.blind
-        };
-        self.nearest(x).filter(takes).map(|(k, _)| k)
+        self.nearest(x).filter(|&(k, distance)| distance < self.served[k].zone).map(|(k, _)| k)
     }
 
     /// The vertex that a stencil of this radius round a point contains.
     pub(super) fn within<const D: usize>(&self, x: &[f64; D], radius: f64) -> Option<usize> {
         self.nearest(x)
             .filter(|&(k, distance)| {
-                let Vertex { local, blind, .. } = &self.served[k];
-                distance <= radius && distance < local.clear && local.to_open_end(x) >= *blind
+                let local = &self.served[k].local;
+                let blind = (BLIND * radius, radius);
+                distance <= radius && distance < local.clear && local.is_amid(x, blind)
             })
             .map(|(k, _)| k)
     }
@@ -315,11 +307,15 @@ impl Vertex {
         let parts = parts.ok_or(Obstacle::Spacing)?;
         let spacing = nodes.nearest_one(&at).map_or(local.clear, |j| problem.cloud.spacing()[j as usize]);
         let stencil = radius_of_ball::<D>(params.stencil_nodes(D)) * spacing;
+        if local.length_an_end() < stencil {
+            return Err(Obstacle::Spacing);
+        }
         let widest = (local.clear - stencil).max(SHARE_OF_CLEAR * local.clear);
-        let widest = (ZONE * params.degree() as f64 * spacing).min(widest);
+        // Along an edge nothing is gained where a stencil does not see it.
+        let is_edge = local.along.is_some();
+        let widest = if is_edge { 0.0 } else { (ZONE * params.degree() as f64 * spacing).min(widest) };
         let of_part = |of: &[f64]| parts.iter().map(|&part| of[part as usize]).collect::<Vec<f64>>();
         let (scale, offset) = (of_part(&unknowns.scale), of_part(&unknowns.offset));
-        let blind = if local.along.is_some() { BLIND * stencil } else { 0.0 };
         // Where data are no polynomials over the whole zone, a smaller one is better.
         let mut best: Option<(f64, Scales, LocalSolution)> = None;
         for share in SHARES_OF_ZONE {
@@ -365,19 +361,7 @@ impl Vertex {
         if found.iter().filter(&mut holds).take(enough).count() < enough {
             return Err(Obstacle::Spacing);
         }
-        Ok(Self {
-            local,
-            solution,
-            scales,
-            terms,
-            units,
-            parts,
-            zone,
-            blind,
-            held,
-            narrow: false,
-            ambiguous,
-        })
+        Ok(Self { local, solution, scales, terms, units, parts, zone, held, narrow: false, ambiguous })
     }
 
     /// Whether other singular points are so near that its functions alone do not conserve heat, and fluxes beside it can be integrated.
@@ -499,12 +483,22 @@ fn terms(local: &Local, degree: usize) -> Vec<Term> {
     let powers = local.exponents.iter().flat_map(|&(power, count)| vec![power; count]);
     let constant = (!local.wedge.is_held()).then_some((None, 0.0));
     let functions = constant.into_iter().chain(powers.enumerate().map(|(k, power)| (Some(k), power)));
+    if local.along.is_none() {
+        return functions.map(|(function, _)| Term { function, power: 0, factors: vec![1.0] }).collect();
+    }
+    // In a narrow wedge there are few up to the degree: then as many as there are harmonic polynomials.
     let most = (degree as f64).max(local.wedge.exponent_of(2.0 * degree as f64 + 1.0)) + AT_VERTEX;
     let of_function = |(function, lambda): (Option<usize>, f64)| {
-        let highest = if local.along.is_some() { (most - lambda).max(0.0) as usize } else { 0 };
-        (0..=highest).map(move |power| Term { function, power, factors: harmonic_factors(lambda, power) })
+        (0..=(most - lambda).max(0.0) as usize)
+            .map(move |power| (lambda + power as f64, function, lambda, power))
     };
-    functions.flat_map(of_function).collect()
+    let mut all: Vec<_> = functions.flat_map(of_function).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let within_degree = all.iter().filter(|term| term.0 <= degree as f64 + AT_VERTEX).count();
+    all.truncate(within_degree.max((degree + 1).pow(2)));
+    let term =
+        |(_, function, lambda, power)| Term { function, power, factors: harmonic_factors(lambda, power) };
+    all.into_iter().map(term).collect()
 }
 
 /// Factors of `r^(2j) z^(k-2j)` that make `r^lambda Phi(theta) z^k` harmonic: `c_0 = 1`,

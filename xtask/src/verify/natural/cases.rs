@@ -26,7 +26,11 @@ pub(super) struct Case {
     pub(super) coarsest: f64,
     /// In three dimensions.
     pub(super) space: bool,
+    /// Whether the methods that are compared can solve it.
+    pub(super) compared: bool,
     pub(super) bounds: &'static [Bound],
+    /// Up to which errors it is known that a bound is missed, of probes and of fluxes, and why.
+    pub(super) missed: Option<(f64, f64, &'static str)>,
 }
 
 /// How well a problem must be solved.
@@ -69,7 +73,9 @@ const HEATED: Case = Case {
     quick: 1,
     coarsest: 0.1,
     space: false,
+    compared: true,
     bounds: &CHIP,
+    missed: None,
 };
 
 pub(super) const CASES: [Case; 21] = [
@@ -227,12 +233,11 @@ pub(super) const CASES: [Case; 21] = [
         title: "Heated cube",
         about: "5.12 is made in a cube of 0.8 and leaves.",
         scene: desk::heated_cube,
-        probes: false,
         parameters: &SOLIDS,
         quick: 0,
         coarsest: 0.24,
         space: true,
-        bounds: &[plan(1, 1e-1, 1e-2)],
+        bounds: &[plan(0, 1e-1, 1e-2), plan(1, 3e-2, 1e-3)],
         ..HEATED
     },
     Case {
@@ -240,7 +245,6 @@ pub(super) const CASES: [Case; 21] = [
         title: "Heated cylinder",
         about: "With ends: curved edges.",
         scene: desk::heated_cylinder,
-        probes: false,
         parameters: &SOLIDS,
         quick: 0,
         coarsest: 0.24,
@@ -251,13 +255,14 @@ pub(super) const CASES: [Case; 21] = [
     Case {
         case: "die-3d",
         title: "Die on a spreader, in space",
-        about: "A quarter of it: 12.5 W in and out.",
+        about: "A quarter of it: 12.5 W in and out. (Cells of `gfdm-conservative` do not follow the edges of a domain that is made of boxes.)",
         scene: desk::die_3d,
         conditions: &["bottom", ""],
         parameters: &[0.15],
         quick: 0,
-        coarsest: 1.0,
+        coarsest: 0.5,
         space: true,
+        compared: false,
         bounds: &[plan(1, 1e-2, 1e-2)],
         ..HEATED
     },
@@ -269,9 +274,14 @@ pub(super) const CASES: [Case; 21] = [
         conditions: &["outside", "", "inside"],
         parameters: &[50.0],
         quick: 0,
-        coarsest: 0.05,
+        coarsest: 0.025,
         space: true,
         bounds: &[plan(1, 6e-3, 1e-2)],
+        missed: Some((
+            5e-2,
+            2e-2,
+            "half of the bar is two spacings thick, too few for functions of its edges, and where bar, layer and air meet the flux depends on u",
+        )),
         ..HEATED
     },
     Case {
@@ -286,6 +296,7 @@ pub(super) const CASES: [Case; 21] = [
         coarsest: 0.08,
         space: true,
         bounds: &[plan(1, 1e-3, 1e-3)],
+        ..HEATED
     },
 ];
 

@@ -83,7 +83,8 @@ fn jobs(case: &Case, effort: Effort) -> Vec<Job> {
         .map(|(p, l)| job(AUTO, p, l))
         .collect();
     if has_orders(effort) {
-        jobs.extend(parameters.first().iter().flat_map(|&&first| {
+        let compared = parameters.first().filter(|_| case.compared);
+        jobs.extend(compared.iter().flat_map(|&&first| {
             COMPARED.iter().flat_map(move |&v| case.levels(effort).map(move |level| job(v, first, level)))
         }));
         for bound in case.bounds {
