@@ -280,7 +280,7 @@ impl Vertex {
         }
         let at: [f64; D] = local.in_space(local.at);
         let terms = terms(&local, params.degree());
-        let functions = terms.len();
+        let functions = terms.len() + usize::from(local.wedge.is_held());
         let mut found = Vec::new();
         nodes.within(&at, local.clear, &mut found);
         if (found.len() as f64) < NODES_PER_FUNCTION * functions as f64 {

@@ -1,5 +1,6 @@
 //! What a plan is expected to take.
 
+use meshless_interfaces::sharp::Conservation;
 use meshless_sparse::SolverKind;
 
 use super::effects::{Effect, Survey};
@@ -30,6 +31,8 @@ struct Rates {
     neighbors: f64,
     stencil: f64,
     cell: f64,
+    /// A cell by region with the fits of its fluxes, at order 4.
+    balance: f64,
     /// Of the solve at 1e4 unknowns; it grows like `unknowns^SOLVE_GROWTH`.
     solve: f64,
     kilobytes: f64,
@@ -37,9 +40,25 @@ struct Rates {
 
 /// Measured with `cargo xtask bench` on one core.
 const RATES: [Rates; 3] = [
-    Rates { points: 0.5, neighbors: 0.5, stencil: 1.0, cell: 1.0, solve: 2.0, kilobytes: 1.0 },
-    Rates { points: 3.0, neighbors: 1.5, stencil: 4.0, cell: 4.0, solve: 20.0, kilobytes: 3.0 },
-    Rates { points: 10.0, neighbors: 6.0, stencil: 15.0, cell: 30.0, solve: 60.0, kilobytes: 6.0 },
+    Rates { points: 0.5, neighbors: 0.5, stencil: 1.0, cell: 1.0, balance: 0.0, solve: 2.0, kilobytes: 1.0 },
+    Rates {
+        points: 3.0,
+        neighbors: 1.5,
+        stencil: 4.0,
+        cell: 4.0,
+        balance: 80.0,
+        solve: 20.0,
+        kilobytes: 3.0,
+    },
+    Rates {
+        points: 10.0,
+        neighbors: 6.0,
+        stencil: 15.0,
+        cell: 30.0,
+        balance: 280.0,
+        solve: 60.0,
+        kilobytes: 6.0,
+    },
 ];
 
 /// Exponent by which the time of a solve exceeds its unknowns.
@@ -59,6 +78,10 @@ const FACTORS_KILOBYTES: [f64; 3] = [0.5, 6.0, 12.0];
 /// Points of a surface at which the balance takes fluxes, a node of it.
 const FLUX_POINTS: [f64; 3] = [1.0, 4.0, 4.0];
 
+/// Nodes with a balance: so many times those of a face, where stencils cross an interface. Fits of the estimate take so many times as long.
+const BALANCED: f64 = 3.5;
+const FINER_BALANCE: f64 = 1.4;
+
 /// Memory of the program itself, in units of 1e6 bytes.
 const BASE_MEMORY_MB: f64 = 10.0;
 
@@ -72,7 +95,9 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
         false => 0.0,
     };
     let solve = rates.solve * (unknowns / 1e4).max(1.0).powf(SOLVE_GROWTH);
-    let made = steps.cells * rates.cell + stencils(&method.params);
+    let balanced =
+        rates.balance * balanced_share(&method.params, steps.may_need_cells, unknowns, scene.dimension);
+    let made = steps.cells * rates.cell + stencils(&method.params) + balanced;
     let in_time = steps::predict(scene, unknowns)?;
     let factors = choose::solver(scene, survey, method.name, unknowns).kind == SolverKind::Direct;
     let matrix_share = if factors { FACTORS_SHARE } else { PRECONDITIONER_SHARE };
@@ -84,7 +109,7 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
     // The method at a higher order on the same nodes, or half as many nodes in every direction.
     let finer = method.params.finer(scene.dimension).filter(|_| scene.time.is_none());
     let estimate = match &finer {
-        Some(finer) => stencils(finer) + solve,
+        Some(finer) => stencils(finer) + solve + FINER_BALANCE * balanced,
         None => own * 0.5_f64.powi(scene.dimension as i32),
     };
     // Fluxes by the method, and by its higher order or other fits.
@@ -103,6 +128,17 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
         memory_mb: BASE_MEMORY_MB + kilobytes * unknowns / 1e3,
         steps: in_time,
     })
+}
+
+/// The part of the nodes that have a balance over a cell by region.
+fn balanced_share(params: &MethodParams, has_cells: bool, nodes: f64, dimension: usize) -> f64 {
+    let MethodParams::Sharp(params) = params else { return 0.0 };
+    match params.conservation {
+        _ if !has_cells => 0.0,
+        Conservation::None => 0.0,
+        Conservation::Crossing => (BALANCED * nodes.powf(-1.0 / dimension as f64)).min(1.0),
+        Conservation::All => 1.0,
+    }
 }
 
 /// Fits that fluxes take: one a point of the faces and of interfaces of about their extent, or, for a method whose fits serve many points,

@@ -237,7 +237,7 @@ pub(super) const CASES: [Case; 21] = [
         quick: 0,
         coarsest: 0.24,
         space: true,
-        bounds: &[plan(0, 1e-1, 1e-2), plan(1, 3e-2, 1e-3)],
+        bounds: &[plan(1, 3e-2, 1e-3)],
         ..HEATED
     },
     Case {

@@ -26,6 +26,17 @@ pub(super) struct Flux {
 }
 
 impl Flux {
+    /// The mean of two.
+    fn mean(mut self, other: &Self) -> Self {
+        self.values.iter_mut().for_each(|(_, factor)| *factor *= 0.5);
+        self.constants.iter_mut().for_each(|(_, factor)| *factor *= 0.5);
+        other.values.iter().for_each(|(j, factor)| self.add_value(*j, 0.5 * factor));
+        other.constants.iter().for_each(|(c, factor)| self.add_constant(*c, 0.5 * factor));
+        self.sum = 0.5 * (self.sum + other.sum);
+        self.known = [0, 1].map(|side| 0.5 * (self.known[side] + other.known[side]));
+        self
+    }
+
     fn add_value(&mut self, node: u32, factor: f64) {
         match self.values.iter_mut().find(|(j, _)| *j == node) {
             Some((_, sum)) => *sum += factor,
@@ -57,21 +68,27 @@ impl<const D: usize> Maker<'_, D> {
         usize::from(second < first)
     }
 
-    /// The node whose fit the flux of a face is told from, with those of the other faces of its cell; `None` where it has a fit of its
-    /// own round the middle: in the plane, and on interfaces, where most of the error comes from.
-    pub(super) fn seat(&self, face: &Face<D>) -> Option<u32> {
+    /// The nodes whose fits the flux of a face is told from, with those of the other faces of their cells, and is the mean of; none where it
+    /// has a fit of its own round the middle: in the plane, and on interfaces, where most of the error comes from. (By the fit of one node
+    /// alone the row of a node that has all of its faces would say nothing: the fit balances any cell.)
+    fn seats(&self, face: &Face<D>) -> [Option<u32>; 2] {
         let label = |j: u32| self.problem.labels[j as usize];
-        let is_inside = match face.beyond {
-            Beyond::Node(other) => label(other) == label(face.node),
-            Beyond::Boundary(_) => true,
-        };
-        (D > 2 && is_inside).then_some(face.node)
+        match face.beyond {
+            _ if D == 2 => [None; 2],
+            Beyond::Boundary(_) => [Some(face.node), None],
+            Beyond::Node(other) if label(other) == label(face.node) => [Some(face.node), Some(other)],
+            Beyond::Node(_) => [None; 2],
+        }
     }
 
     /// The fluxes of all faces; `None` where no fit determines one.
     pub(super) fn fluxes(&self, faces: &[Face<D>]) -> Result<Vec<Option<Flux>>, MethodError> {
-        let mut order: Vec<(Option<u32>, usize)> =
-            faces.iter().enumerate().map(|(place, face)| (self.seat(face), place)).collect();
+        let mut order: Vec<(Option<u32>, usize)> = Vec::with_capacity(2 * faces.len());
+        for (place, face) in faces.iter().enumerate() {
+            let [first, second] = self.seats(face);
+            order.push((first, place));
+            order.extend(second.map(|second| (Some(second), place)));
+        }
         order.sort_unstable();
         let shared = |a: &(Option<u32>, usize), b: &(Option<u32>, usize)| a.0.is_some() && a.0 == b.0;
         let groups: Vec<&[(Option<u32>, usize)]> = order.chunk_by(shared).collect();
@@ -86,7 +103,12 @@ impl<const D: usize> Maker<'_, D> {
             groups[g].iter().map(flux).collect::<Result<Vec<_>, _>>()
         })?;
         let mut fluxes: Vec<Option<Flux>> = vec![None; faces.len()];
-        order.iter().zip(found.into_iter().flatten()).for_each(|(&(_, place), flux)| fluxes[place] = flux);
+        for (&(_, place), flux) in order.iter().zip(found.into_iter().flatten()) {
+            fluxes[place] = match (fluxes[place].take(), flux) {
+                (Some(first), Some(second)) => Some(first.mean(&second)),
+                (first, second) => first.or(second),
+            };
+        }
         Ok(fluxes)
     }
 

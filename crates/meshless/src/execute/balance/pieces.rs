@@ -29,6 +29,9 @@ const HALVINGS: usize = 52;
 /// Changes that are looked for between two probes at most.
 const CHANGES: usize = 4;
 
+/// Halvings on the way to a line that is tangent to an edge: the distance counts by its square root.
+const TANGENT_HALVINGS: usize = 40;
+
 /// Points of a panel that begins at a corner, where fluxes may be infinite.
 const POINTS_FROM_CORNER: usize = 16;
 
@@ -99,7 +102,8 @@ impl<const D: usize> Rule<'_, D> {
         kind: &dyn Fn(&Element<D>) -> Option<T>,
     ) -> Vec<(Element<D>, T)> {
         let mut found = Vec::new();
-        for first in self.across(patch, kind) {
+        let straight = self.across(patch, kind);
+        for first in straight.iter().flat_map(|part| self.between_tangents(patch, part, kind)) {
             for (s, weight) in self.nodes(patch, 0, &first, &|s| [s, 0.5]) {
                 for part in self.parts(patch, 1, &|t| kind(&patch.at([s, t]))) {
                     for (t, inner) in self.nodes(patch, 1, &part, &|t| [s, t]) {
@@ -135,6 +139,43 @@ impl<const D: usize> Rule<'_, D> {
         }
         edges.push(1.0);
         edges.windows(2).map(|e| Part { from: e[0], to: e[1], kind: (), corners: [false; 2] }).collect()
+    }
+
+    /// Divides a part of the first parameter of a square where the lines across begin to meet something else: there a curved edge is
+    /// tangent to the line, and what it cuts off begins like the square root of the distance.
+    fn between_tangents<T: PartialEq + Clone>(
+        &self,
+        patch: &Patch<'_, D>,
+        part: &Part<()>,
+        kind: &dyn Fn(&Element<D>) -> Option<T>,
+    ) -> Vec<Part<()>> {
+        let met = |s: f64| -> Vec<Option<T>> {
+            let parts = self.all_parts(patch, 1, &|t| kind(&patch.at([s, t])));
+            parts.into_iter().map(|part| part.kind).collect()
+        };
+        let length = patch.extent[0] * (part.to - part.from);
+        let count = (length / (LINE_SPACINGS * self.least)).ceil().clamp(LINES[0], LINES[1]);
+        let place = |k: usize| part.from + (part.to - part.from) * (k as f64 + 0.5) / count;
+        let mut pieces = vec![Part { from: part.from, to: part.to, kind: (), corners: [false; 2] }];
+        let mut before = met(place(0));
+        for k in 1..count as usize {
+            let here = met(place(k));
+            if here == before {
+                continue;
+            }
+            let (mut low, mut high) = (place(k - 1), place(k));
+            for _ in 0..TANGENT_HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if met(middle) == before { &mut low } else { &mut high }) = middle;
+            }
+            let change = 0.5 * (low + high);
+            if let Some(last) = pieces.last_mut() {
+                (last.to, last.corners[1]) = (change, true);
+            }
+            pieces.push(Part { from: change, to: part.to, kind: (), corners: [true, false] });
+            before = here;
+        }
+        pieces
     }
 
     /// The parts of a parameter that count.
@@ -184,6 +225,11 @@ impl<const D: usize> Rule<'_, D> {
         parts
     }
 
+    /// Whether points of a parameter gather at corners of its parts: where fluxes may be infinite in the plane, and tangents in space.
+    fn is_graded(&self, axis: usize) -> bool {
+        if D == 3 { axis == 0 } else { self.corners }
+    }
+
     /// Gauss points of a part, with their weights.
     fn nodes<T>(
         &self,
@@ -196,7 +242,7 @@ impl<const D: usize> Rule<'_, D> {
         let (most, least) =
             (POINTS[D - 1], if patch.is_chord() { LEAST_ON_CHORD } else { LEAST_POINTS[D - 1] });
         let mut found = Vec::new();
-        let of_corners = self.corners && D == 2;
+        let of_corners = self.is_graded(axis);
         for (from, to) in self.panels(patch, axis, part, at) {
             // Panels that begin at a corner have it at their first end.
             let length = extent * (to - from).abs();
@@ -221,7 +267,7 @@ impl<const D: usize> Rule<'_, D> {
         part: &Part<T>,
         at: &dyn Fn(f64) -> [f64; 2],
     ) -> Vec<(f64, f64)> {
-        let of_corners = self.corners && D == 2;
+        let of_corners = self.is_graded(axis);
         let both = of_corners && part.corners == [true; 2];
         let share = (part.to - part.from) * patch.parts[axis] as f64;
         let first = share.ceil().max(if both { 2.0 } else { 1.0 }) as usize;
