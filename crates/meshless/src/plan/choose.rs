@@ -239,9 +239,9 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     if let Some(constrained) = steps.constrained {
         decide(constrained, Stage::ConstrainedStencils, "nothing jumps anywhere");
     }
-    let functions = matches!(method.params, MethodParams::Sharp(_)) && survey.has_corners(scene);
+    let functions = matches!(method.params, MethodParams::Sharp(_)) && survey.has_corner_functions(scene);
     let none = match survey.has(|e| matches!(e, Effect::Corners { .. })) {
-        true => "they serve corners of steady scenes in the plane, with the method \"sharp\"",
+        true => "they serve straight corners and edges of steady scenes, with the method \"sharp\"",
         false => "no corner is known at which the solution is singular",
     };
     decide(functions, Stage::CornerFunctions, none);

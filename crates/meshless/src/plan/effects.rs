@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use meshless_interfaces::Obstacle;
+
 use crate::Error;
 use crate::build;
 use crate::scene::{ConditionSpec, ExprField, RegionSpec, Scene};
@@ -116,6 +118,8 @@ pub(super) struct Survey {
     pub(super) uniform: bool,
     /// Largest over smallest diffusivity, as far as sampled.
     pub(super) contrast: f64,
+    /// Whether the sharp method has functions for any of the corners.
+    servable: bool,
 }
 
 impl Survey {
@@ -164,7 +168,8 @@ impl Survey {
         if let Some(exponent) = corners.iter().map(|corner| corner.exponent).min_by(f64::total_cmp) {
             effects.push(Effect::Corners { count: corners.len(), exponent });
         }
-        Ok(Self { effects, uniform, contrast })
+        let servable = corners.iter().any(|corner| corner.obstacle == Some(Obstacle::Method));
+        Ok(Self { effects, uniform, contrast, servable })
     }
 
     pub(super) fn has(&self, test: fn(&Effect) -> bool) -> bool {
@@ -174,6 +179,11 @@ impl Survey {
     /// Whether there are corners that functions can serve: those of a steady scene in the plane.
     pub(super) fn has_corners(&self, scene: &Scene) -> bool {
         scene.dimension == 2 && scene.time.is_none() && self.has(|e| matches!(e, Effect::Corners { .. }))
+    }
+
+    /// Whether the sharp method has functions for some of the corners, or edges in space, of a steady scene.
+    pub(super) fn has_corner_functions(&self, scene: &Scene) -> bool {
+        scene.time.is_none() && (self.has_corners(scene) || self.servable)
     }
 
     /// Whether anything happens at an interface at all.

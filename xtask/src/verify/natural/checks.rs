@@ -63,7 +63,7 @@ fn accuracy(runner: &Runner<'_>, case: &Case, parameter: f64, bound: &Bound, cla
         |claim: String, measured: Option<f64>, bound: f64, missed: Option<f64>| match case.missed.zip(missed)
         {
             Some(((.., why), missed)) => {
-                claims.explained(case.case, claim, measured, [0.0, bound], [bound, missed], why)
+                claims.explained(case.case, claim, measured, [0.0, bound], [bound, missed], why);
             }
             None => claims.at_most(case.case, claim, measured, bound),
         };
