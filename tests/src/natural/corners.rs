@@ -43,7 +43,9 @@ pub fn kellogg(_: f64, spacing: f64, seed: u64) -> String {
     const SIGMA: f64 = -14.922_565_104_551_52;
     let cos = |shift: f64| format!("cos(0.1*({shift:?}))");
     // An angle from 0 to 2 pi; what is below the axis by round-off alone is on it.
-    let angle = |shift: f64| format!("cos(0.1*(atan2(y, x) + if(y < -1e-12, 2*pi, 0) - ({shift:?})))");
+    let angle = |shift: f64| {
+        format!("cos(0.1*(atan2(if(abs(y) < 1e-12, 0, y), x) + if(y < -1e-12, 2*pi, 0) - ({shift:?})))")
+    };
     let pi = std::f64::consts::PI;
     let rho = pi / 4.0;
     let mu = [

@@ -541,3 +541,34 @@ pub(super) fn apply<const D: usize>(functional: &Row<D>, (value, gradient): &Val
     let slope: f64 = (0..D).map(|k| functional.gradient[k] * gradient[k]).sum();
     functional.value * value + radius * slope
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{along_edge, harmonic_factors};
+
+    /// `r^lambda cos(lambda t) sum_j c_j r^(2j) z^(k-2j)`, its Laplacian by differences, and its derivatives in r and z.
+    #[test]
+    fn functions_along_an_edge_are_harmonic() {
+        for lambda in [0.0, 0.4, 0.73, 1.0, 2.5] {
+            for power in 0..7 {
+                let factors = harmonic_factors(lambda, power);
+                let at = |x: [f64; 3]| {
+                    let (r, t) = (x[0].hypot(x[1]), x[1].atan2(x[0]));
+                    r.powf(lambda) * (lambda * t).cos() * along_edge(power, &factors, r, x[2])[0]
+                };
+                let (x, step) = ([0.6, 0.3, 0.4], 1e-3);
+                let moved =
+                    |axis: usize, by: f64| std::array::from_fn(|k| if k == axis { x[k] + by } else { x[k] });
+                let second =
+                    |k: usize| (at(moved(k, step)) + at(moved(k, -step)) - 2.0 * at(x)) / (step * step);
+                let laplacian: f64 = (0..3).map(second).sum();
+                assert!(laplacian.abs() < 1e-4, "{lambda} {power}: {laplacian}");
+                let (r, z) = (0.7, 0.4);
+                let [_, in_r, in_z] = along_edge(power, &factors, r, z);
+                let of = |r: f64, z: f64| along_edge(power, &factors, r, z)[0];
+                assert!((in_r - (of(r + step, z) - of(r - step, z)) / (2.0 * step)).abs() < 1e-5);
+                assert!((in_z - (of(r, z + step) - of(r, z - step)) / (2.0 * step)).abs() < 1e-5);
+            }
+        }
+    }
+}
