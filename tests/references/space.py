@@ -60,12 +60,10 @@ def bar(eta):
         if p.z < 1e-9:
             return "outside"
         free = p.z > 0.2 - 1e-9 and p.x < 0.5 - 1e-9 and p.y < 0.5 - 1e-9 and (p.z > 0.6 - 1e-9 or max(p.x - 0.05, p.y - 0.025) > -1e-9)
-        # A name of its own: pieces without one are called "inside", which is a condition here.
-        return "inside" if free else "insulated"
+        return "inside" if free else None
     probes = [("bar", (0.0, 0.0, 0.0)), ("bar", (0.0, 0.0, 0.4)), ("layer", (0.2, 0.2, 0.1)), ("layer", (0.1, 0.0, 0.1))]
     # Those of the bar in the layer, without the lines where its sides meet planes of symmetry.
     edges = lambda p: 1e-9 < p.x < 0.05 + 1e-9 and 1e-9 < p.y < 0.025 + 1e-9 and max(p.x - 0.05, p.y - 0.025) > -1e-9 and p.z < 0.2 + 1e-9
-    # Degree 4 at most: fluxes are integrated to order 5.
     return hp.Problem("iso-10211-4", regions, probes, named, convection={"outside": (10, 0), "inside": (10, 1)}, size=0.03,
                       levels=((6, 3, 0.25), (6, 4, 0.25)), edges=edges)
 

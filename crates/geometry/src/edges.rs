@@ -10,6 +10,7 @@ use crate::domain::{Domain, FaceId};
 use crate::planar::{Ray, Vertex};
 use crate::region::RegionMap;
 use crate::shape::Shape;
+use crate::surface::cross;
 use crate::vector::{axis_vector, axpy, distance, dot, norm, normalized, scale, sub};
 
 /// Points nearer than this to each other are one, over the diameter of the domain: rounding of what users write.
@@ -161,16 +162,12 @@ fn planes<const D: usize>(domain: &Domain<D>, regions: &RegionMap<D>) -> Vec<Pla
     found
 }
 
-/// What is looked at.
+/// The planes of a scene, what is where, and lengths that count as none and as all.
 struct Scene<'a> {
     planes: &'a [Plane],
     label: &'a dyn Fn(&[f64; 3]) -> Option<u16>,
     tolerance: f64,
     size: f64,
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 impl Scene<'_> {
@@ -331,7 +328,7 @@ impl Scene<'_> {
         let ray = |&k: &usize| {
             let is_outer = all[k].1.is_none() || all[(k + count - 1) % count].1.is_none();
             let face = if is_outer { self.face_at(line, middle, all[k].0) } else { None };
-            Ray { angle: all[k].0, face, straight: true }
+            Ray { angle: all[k].0, face, curvature: 0.0 }
         };
         let rays: Vec<Ray> = kept.iter().map(ray).collect();
         if let [a, b] = rays[..]
@@ -362,7 +359,7 @@ impl Scene<'_> {
         ([cos, sin], around.sectors[sector])
     }
 
-    /// Distance up to which all is as right at the edge.
+    /// Distance from the edge up to which every sector holds nothing but its own region.
     fn clear(&self, frame: &Frame, half_length: f64, around: &Vertex, step: f64) -> f64 {
         let mut clear = self.size;
         for station in STATIONS.map(|s| s * half_length) {

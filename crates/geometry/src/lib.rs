@@ -53,8 +53,8 @@ mod vector;
 
 pub use aabb::Aabb;
 pub use cloud::{
-    BoundaryNode, Cloud, CloudParams, CloudQuality, GivenCloud, GivenParams, Layout, Spacing, SpacingFn,
-    Touch, around, check_size, estimate_nodes, generate, quality,
+    BoundaryNode, Cloud, CloudParams, CloudQuality, GivenCloud, GivenParams, Layout, Size, Spacing,
+    SpacingFn, Touch, around, check_size, estimate_nodes, generate, quality,
 };
 pub use domain::{Domain, FaceId};
 pub use edges::{Edge, Frame, edges};

@@ -17,7 +17,8 @@ pub use generate::generate;
 pub use given::{GivenCloud, GivenParams, around};
 pub use params::{CloudParams, Layout, Spacing, SpacingFn};
 pub use quality::{CloudQuality, quality};
-pub(crate) use sizes::{Size, Sizes};
+pub use sizes::Size;
+pub(crate) use sizes::Sizes;
 
 use crate::domain::FaceId;
 use crate::error::GeometryError;

@@ -1,6 +1,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::sizes::{Size, Sizes};
 use crate::error::GeometryError;
 
 /// How nodes are laid out.
@@ -48,6 +49,19 @@ impl<const D: usize> Spacing<D> {
             return Ok(spacing);
         }
         Err(GeometryError::InvalidSpacing { at: x.to_vec(), spacing })
+    }
+
+    /// The largest spacing that is nowhere larger than this one, and at each of the places no larger than asked for there; away from them what
+    /// they ask for grows by a quarter of the distance.
+    pub fn at_most(self, places: Vec<Size<D>>) -> Self {
+        if places.is_empty() {
+            return self;
+        }
+        let sizes = Sizes::new(places);
+        // What is no spacing is refused where it is evaluated.
+        Self::Graded(Arc::new(move |x: &[f64; D]| {
+            self.at(x).map_or(f64::NAN, |largest| sizes.at(x, largest))
+        }))
     }
 }
 

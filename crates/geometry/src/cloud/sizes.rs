@@ -12,8 +12,28 @@ const FLAT: f64 = 1.0;
 /// Places of a leaf at most.
 const LEAF: usize = 4;
 
-/// A spacing at a place.
-pub(crate) type Size<const D: usize> = ([f64; D], f64);
+/// A spacing that is asked for at a place, and within a distance of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size<const D: usize> {
+    /// Where.
+    pub at: [f64; D],
+    /// The spacing, positive.
+    pub spacing: f64,
+    /// How far round it the spacing does not grow yet.
+    pub within: f64,
+}
+
+impl<const D: usize> Size<D> {
+    /// At a place, and as far round it as nodes are apart.
+    pub fn at(at: [f64; D], spacing: f64) -> Self {
+        Self { at, spacing, within: FLAT * spacing }
+    }
+
+    /// What is asked for at a distance; it increases with that.
+    fn grown(&self, distance: f64) -> f64 {
+        grown(self.spacing, self.within, distance)
+    }
+}
 
 /// The largest spacing that is nowhere larger than asked for and grows by [`GROWTH`]: boxes about places, halved at the median
 /// along the longest side, each with the least spacing in it.
@@ -27,7 +47,9 @@ pub(crate) struct Sizes<const D: usize> {
 struct Node<const D: usize> {
     min: [f64; D],
     max: [f64; D],
+    /// The least spacing, and the largest distance within which one does not grow.
     least: f64,
+    within: f64,
     /// Of a leaf the first of its places, of others their second child; the first one comes next.
     start: u32,
     /// Places of a leaf; 0 for others.
@@ -50,12 +72,12 @@ impl<const D: usize> Sizes<D> {
 
     fn below(&self, at: usize, x: &[f64; D], best: f64) -> f64 {
         let node = &self.boxes[at];
-        if grown(node.least, node.squared(x).sqrt()) >= best {
+        if grown(node.least, node.within, node.squared(x).sqrt()) >= best {
             return best;
         }
         if node.count > 0 {
             let places = &self.places[node.start as usize..(node.start + node.count) as usize];
-            return places.iter().fold(best, |best, (p, size)| best.min(grown(*size, distance(x, p))));
+            return places.iter().fold(best, |best, size| best.min(size.grown(distance(x, &size.at))));
         }
         let best = self.below(at + 1, x, best);
         self.below(node.start as usize, x, best)
@@ -74,7 +96,7 @@ impl<const D: usize> Sizes<D> {
         let node = &self.boxes[at];
         if node.count > 0 {
             for place in &self.places[node.start as usize..(node.start + node.count) as usize] {
-                let squared = distance_squared(x, &place.0);
+                let squared = distance_squared(x, &place.at);
                 if squared < best.0 {
                     *best = (squared, Some(*place));
                 }
@@ -100,30 +122,32 @@ impl<const D: usize> Node<D> {
     }
 }
 
-/// The spacing at a distance from where `size` is asked for; it increases with both.
-fn grown(size: f64, distance: f64) -> f64 {
-    size + GROWTH * (distance - FLAT * size).max(0.0)
+/// The spacing at a distance from where one is asked for.
+fn grown(spacing: f64, within: f64, distance: f64) -> f64 {
+    spacing + GROWTH * (distance - within).max(0.0)
 }
 
 fn divide<const D: usize>(boxes: &mut Vec<Node<D>>, places: &mut [Size<D>], first: u32) {
-    let (mut min, mut max, mut least) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D], f64::INFINITY);
-    for (x, size) in places.iter() {
+    let (mut min, mut max) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    let (mut least, mut within) = (f64::INFINITY, 0.0_f64);
+    for size in places.iter() {
         for k in 0..D {
-            min[k] = min[k].min(x[k]);
-            max[k] = max[k].max(x[k]);
+            min[k] = min[k].min(size.at[k]);
+            max[k] = max[k].max(size.at[k]);
         }
-        least = least.min(*size);
+        least = least.min(size.spacing);
+        within = within.max(size.within);
     }
     let own = boxes.len();
     let count = if places.len() <= LEAF { places.len() as u32 } else { 0 };
-    boxes.push(Node { min, max, least, start: first, count });
+    boxes.push(Node { min, max, least, within, start: first, count });
     if count > 0 {
         return;
     }
     let width = |k: usize| max[k] - min[k];
     let axis = (0..D).fold(0, |best, k| if width(k) > width(best) { k } else { best });
     let half = places.len() / 2;
-    places.select_nth_unstable_by(half, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+    places.select_nth_unstable_by(half, |a, b| a.at[axis].total_cmp(&b.at[axis]));
     let (left, right) = places.split_at_mut(half);
     divide(boxes, left, first);
     boxes[own].start = boxes.len() as u32;
@@ -139,14 +163,18 @@ mod tests {
     fn the_least_of_all() {
         let mut random = Random::new(3);
         let mut point = || [random.symmetric(), random.symmetric()];
-        let places: Vec<Size<2>> = (0..200).map(|k| (point(), 0.01 + 0.001 * f64::from(k % 17))).collect();
+        let place = |k: u32| Size {
+            within: 0.003 * f64::from(k % 13),
+            ..Size::at(point(), 0.01 + 0.001 * f64::from(k % 17))
+        };
+        let places: Vec<Size<2>> = (0..200).map(place).collect();
         let sizes = Sizes::new(places.clone());
         for _ in 0..100 {
             let x = point();
-            let all = places.iter().map(|(p, size)| grown(*size, distance(&x, p)));
+            let all = places.iter().map(|size| size.grown(distance(&x, &size.at)));
             assert_eq!(sizes.at(&x, 0.05), all.fold(0.05, f64::min));
-            let nearest = places.iter().map(|(p, _)| distance(&x, p)).fold(f64::INFINITY, f64::min);
-            assert_eq!(sizes.nearest(&x).map(|(p, _)| distance(&x, &p)), Some(nearest));
+            let nearest = places.iter().map(|p| distance(&x, &p.at)).fold(f64::INFINITY, f64::min);
+            assert_eq!(sizes.nearest(&x).map(|p| distance(&x, &p.at)), Some(nearest));
         }
         assert_eq!(Sizes::<2>::default().at(&[0.0, 0.0], 0.05), 0.05);
     }

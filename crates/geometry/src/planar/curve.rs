@@ -69,6 +69,14 @@ impl Curve {
         [-y, x]
     }
 
+    /// Its curvature: positive where it bends to the left.
+    pub(super) fn curvature(&self) -> f64 {
+        match self {
+            Self::Segment { .. } => 0.0,
+            Self::Arc { radius, .. } => radius.recip(),
+        }
+    }
+
     pub(super) fn length(&self) -> f64 {
         match self {
             Self::Segment { from, to } => distance(from, to),

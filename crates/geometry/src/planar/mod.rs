@@ -50,11 +50,6 @@ impl PlanarPiece {
     pub fn length(&self) -> f64 {
         self.curve.length()
     }
-
-    /// Whether it is part of a straight line.
-    pub fn is_straight(&self) -> bool {
-        matches!(self.curve, Curve::Segment { .. })
-    }
 }
 
 /// All pieces of a scene in the plane.

@@ -9,6 +9,9 @@ use crate::vector::{axpy, distance};
 /// Angle below which two pieces lead on without a bend, in radians: far above rounding, far below what matters.
 const STRAIGHT_ON: f64 = 1e-7;
 
+/// What the curvatures of two arcs of one circle may differ by, relative: rounding.
+const SAME_CIRCLE: f64 = 1e-9;
+
 /// A piece of an interface or of the boundary as seen from a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
@@ -16,8 +19,8 @@ pub struct Ray {
     pub angle: f64,
     /// The face that it is part of, on the boundary of the domain.
     pub face: Option<FaceId>,
-    /// Whether it is straight.
-    pub straight: bool,
+    /// Its curvature, of a circle's arc where it is not straight: positive where it bends counterclockwise.
+    pub curvature: f64,
 }
 
 /// A point where pieces of interfaces and boundaries meet.
@@ -39,6 +42,8 @@ struct End<'a> {
     index: usize,
     at: [f64; 2],
     angle: f64,
+    /// As that of a ray.
+    curvature: f64,
     /// The region on the counterclockwise side, as seen from this end.
     left: Option<u16>,
 }
@@ -75,7 +80,8 @@ impl PlanarPieces {
                 let [a, b] = [&ends[here[0]], &ends[here[1]]];
                 let bend = ((a.angle - b.angle).rem_euclid(TAU) - PI).abs();
                 // Circles begin and end somewhere.
-                let same = a.piece.is_straight() == b.piece.is_straight();
+                let largest = a.curvature.abs().max(b.curvature.abs());
+                let same = (a.curvature + b.curvature).abs() <= SAME_CIRCLE * largest;
                 bend <= STRAIGHT_ON && same && a.piece.face == b.piece.face && a.left == b.right()
             }
         };
@@ -97,15 +103,17 @@ impl PlanarPieces {
 
     fn ends(&self) -> Vec<End<'_>> {
         let angle = |[x, y]: [f64; 2]| y.atan2(x).rem_euclid(TAU);
-        let both = |(index, piece): (usize, &'_ PlanarPiece)| {
+        let mut all = Vec::with_capacity(2 * self.pieces.len());
+        for (index, piece) in self.pieces.iter().enumerate() {
+            let ([left, right], bend) = (piece.sides, piece.curve.curvature());
             let back = piece.curve.along(1.0).map(|x| -x);
-            let [left, right] = piece.sides;
-            [(piece.at(0.0), piece.curve.along(0.0), left), (piece.at(1.0), back, right)]
-                .map(|(at, along, left)| (index, at, angle(along), left))
-        };
-        let all = self.pieces.iter().enumerate().flat_map(both);
-        all.map(|(index, at, angle, left)| End { piece: &self.pieces[index], index, at, angle, left })
-            .collect()
+            let ends = [(0.0, piece.curve.along(0.0), bend, left), (1.0, back, -bend, right)];
+            all.extend(ends.map(|(t, along, curvature, left)| {
+                let (at, angle) = (piece.at(t), angle(along));
+                End { piece, index, at, angle, curvature, left }
+            }));
+        }
+        all
     }
 
     fn vertex(
@@ -117,11 +125,7 @@ impl PlanarPieces {
     ) -> Vertex {
         let mut here: Vec<&End<'_>> = here.iter().map(|&k| &ends[k]).collect();
         here.sort_by(|a, b| a.angle.total_cmp(&b.angle));
-        let ray = |end: &&End<'_>| Ray {
-            angle: end.angle,
-            face: end.piece.face,
-            straight: end.piece.is_straight(),
-        };
+        let ray = |end: &&End<'_>| Ray { angle: end.angle, face: end.piece.face, curvature: end.curvature };
         // Pieces that lead on from those that meet here belong to the same rays.
         let mut own: Vec<usize> = Vec::new();
         let mut clear = f64::INFINITY;
@@ -160,13 +164,13 @@ impl PlanarPieces {
         let along = piece.curve.along(t);
         let ahead = along[1].atan2(along[0]).rem_euclid(TAU);
         let back = (ahead + PI).rem_euclid(TAU);
-        let [left, right] = piece.sides;
-        let mut rays = [(ahead, left), (back, right)];
+        let ([left, right], bend) = (piece.sides, piece.curve.curvature());
+        let mut rays = [(ahead, left, bend), (back, right, -bend)];
         rays.sort_by(|a, b| a.0.total_cmp(&b.0));
         let others = self.pieces.iter().filter(|other| !std::ptr::eq(*other, piece));
         let ends = [0.0, 1.0].map(|t| distance(&piece.at(t), at));
         let clear = others.fold(ends[0].min(ends[1]), |c, other| c.min(other.curve.distance(at)));
-        let ray = |(angle, _)| Ray { angle, face: piece.face, straight: piece.is_straight() };
+        let ray = |(angle, _, curvature)| Ray { angle, face: piece.face, curvature };
         Some(Vertex { at: *at, rays: rays.map(ray).to_vec(), sectors: rays.map(|r| r.1).to_vec(), clear })
     }
 }
@@ -275,7 +279,12 @@ mod tests {
         let regions = |s: Shape<2>| RegionMap::new(vec![Some(s), None]).expect("regions");
         let vertices = PlanarPieces::new(&domain, &regions(disc([0.0, 0.0]))).vertices(&[]);
         assert_eq!(vertices.iter().filter(|v| v.rays.len() == 3).count(), 2);
-        assert!(vertices.iter().filter(|v| v.rays.len() == 3).all(|v| v.rays.iter().any(|r| !r.straight)));
+        assert!(
+            vertices
+                .iter()
+                .filter(|v| v.rays.len() == 3)
+                .all(|v| v.rays.iter().any(|r| r.curvature.abs() == 2.0))
+        );
         let lens = Shape::intersection(vec![disc([0.3, 0.5]), disc([0.7, 0.5])]).expect("a lens");
         let vertices = PlanarPieces::new(&domain, &regions(lens)).vertices(&[]);
         assert_eq!(vertices.len(), 6);

@@ -1,7 +1,5 @@
 //! Clouds that resolve the layers and gaps between interfaces.
 
-use std::sync::Arc;
-
 use super::{RegionMap, ThinLayer};
 use crate::cloud::{Cloud, CloudParams, Size, Sizes, Spacing, generate};
 use crate::domain::Domain;
@@ -87,7 +85,7 @@ impl<'a, const D: usize> Refined<'a, D> {
             let given = self.at(&layer.at)?;
             if given > MET * size && !new.conflicts(&layer.at, size, APART) {
                 new.insert(layer.at, size);
-                self.places.push((layer.at, size));
+                self.places.push(Size::at(layer.at, size));
             }
         }
         self.sizes = Sizes::new(self.places.clone());
@@ -104,10 +102,7 @@ impl<'a, const D: usize> Refined<'a, D> {
 
     /// The same as a function.
     pub(super) fn spacing(&self) -> Spacing<D> {
-        let (given, sizes) = (self.given.clone(), self.sizes.clone());
-        // What is no spacing is refused where it is evaluated.
-        let at = move |x: &[f64; D]| given.at(x).map_or(f64::NAN, |largest| sizes.at(x, largest));
-        Spacing::Graded(Arc::new(at))
+        self.given.clone().at_most(self.places.clone())
     }
 }
 

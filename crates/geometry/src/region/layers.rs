@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 
 use super::RegionMap;
-use crate::cloud::{Cloud, Sizes};
+use crate::cloud::{Cloud, Size, Sizes};
 use crate::domain::Domain;
 use crate::projection::Projection;
 use crate::vector::{axpy, dot, norm, normalized};
@@ -64,10 +64,11 @@ impl<const D: usize> RegionMap<D> {
         let uniform = cloud.spacing().windows(2).all(|pair| pair[0] == pair[1]);
         if !layers.is_empty() && !uniform {
             // What is thin beside a node of a coarser part may be resolved by those that are nearer to it.
-            let nodes =
-                Sizes::new(cloud.points().iter().copied().zip(cloud.spacing().iter().copied()).collect());
+            let nodes = Sizes::new(
+                cloud.points().iter().zip(cloud.spacing()).map(|(x, s)| Size::at(*x, *s)).collect(),
+            );
             layers.retain_mut(|layer| {
-                layer.spacing = nodes.nearest(&layer.at).map_or(layer.spacing, |(_, spacing)| spacing);
+                layer.spacing = nodes.nearest(&layer.at).map_or(layer.spacing, |size| size.spacing);
                 layer.thickness < least * layer.spacing
             });
         }

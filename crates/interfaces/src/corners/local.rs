@@ -1,13 +1,13 @@
-//! A vertex with what meets there: sectors, their materials, what holds on the outer rays, and the data along all rays.
+//! A vertex, or what is across an edge in space: sectors, their materials, what holds on the outer rays, and the data along all rays.
 
 use std::f64::consts::TAU;
 
 use meshless_geometry::{Edge, FaceId, Frame, Vertex};
 use nalgebra::{DMatrix, DVector};
 
-use super::rims::condition_at;
+use super::straightening::Straightening;
 use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
-use super::{Corner, CornerData};
+use super::{Corner, CornerData, condition_at};
 use crate::Condition;
 use crate::problem::between;
 
@@ -24,7 +24,7 @@ const NO_COMPONENT: f64 = 1e-15;
 /// How far from whole numbers an exponent may be for its function to count as a polynomial.
 const WHOLE: f64 = 1e-7;
 
-/// Powers from here on are weak.
+/// Logarithms that stand with this power or a higher one do not count at edges in space.
 const WEAK: f64 = 2.0;
 
 /// Part of the largest coefficient of data below which one is rounding.
@@ -60,7 +60,7 @@ const ALIKE: f64 = 1e-12;
 /// Why corner functions do not serve a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
-    /// An interface or a boundary that is curved there.
+    /// An interface or a boundary that is curved there, and no arc of a circle, or arcs that no one map makes straight.
     Curved,
     /// The diffusivity varies in a region that meets there.
     Varies,
@@ -74,7 +74,7 @@ pub enum Obstacle {
     VariesAlong,
     /// Nodes are too far apart for the sides that meet there.
     Spacing,
-    /// It is not in the plane, or the method has no corner functions.
+    /// The method has no corner functions.
     Method,
 }
 
@@ -119,14 +119,16 @@ pub(crate) struct Along {
 /// A vertex in the plane, or what is across an edge in space, as a local problem.
 #[derive(Debug, Clone)]
 pub(crate) struct Local {
-    /// The plane.
+    /// The plane that it is in: that of the scene, or the one at right angles to an edge through its middle.
     pub(crate) frame: Frame,
-    /// Of an edge.
+    /// How far an edge extends along itself; `None` for a vertex in the plane.
     pub(crate) along: Option<Along>,
     /// Where in the plane.
     pub(crate) at: [f64; 2],
     /// Angle of the first ray.
     start: f64,
+    /// What makes its rays straight. Distances and angles in the wedge are those after it.
+    straightening: Straightening,
     /// The sectors, with scale 1.
     pub(crate) wedge: Wedge,
     /// Regions of the sectors.
@@ -149,7 +151,7 @@ pub(crate) struct LocalSolution {
     /// What the data and the source add, in `r / R`.
     pub(crate) forced: Vec<Forced>,
     /// What a source of 1 everywhere adds, beside its polynomial.
-    pub(crate) unit: Forced,
+    pub(crate) unit: Vec<Forced>,
     /// How far the polynomials that stand for the data are off, and their degree.
     pub(crate) doubt: f64,
     data_degree: usize,
@@ -164,7 +166,7 @@ pub(crate) struct Scales {
     pub(crate) offset: Vec<f64>,
     /// The distance R that r is divided by.
     pub(crate) radius: f64,
-    /// Polynomials in the coordinates over R that have the right Laplacian in every sector.
+    /// Polynomials in the coordinates from the vertex over R, before any straightening, that have the right Laplacian in every sector.
     pub(crate) sources: Vec<Vec<Monomial>>,
     /// How far these are off.
     pub(crate) doubt: f64,
@@ -250,7 +252,12 @@ impl Local {
         })
     }
 
-    /// As it is reported.
+    /// Whether no ray of it is curved.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.straightening.is_identity()
+    }
+
+    /// The entry of a report for it.
     pub(crate) fn corner(&self, exponent: f64, obstacle: Option<Obstacle>) -> Corner {
         let at = match self.along {
             None => self.at.to_vec(),
@@ -328,11 +335,27 @@ impl Local {
         seen.iter().skip(1).any(differs)
     }
 
+    /// Angle of the middle of a sector.
+    pub(crate) fn middle(&self, sector: usize) -> f64 {
+        let before: f64 = self.wedge.sectors[..sector].iter().map(|s| s.opening).sum();
+        self.start + before + 0.5 * self.wedge.sectors[sector].opening
+    }
+
     /// The point at a distance in the middle of a sector.
     pub(crate) fn inside(&self, sector: usize, distance: f64) -> [f64; 2] {
-        let before: f64 = self.wedge.sectors[..sector].iter().map(|s| s.opening).sum();
-        let (sin, cos) = (self.start + before + 0.5 * self.wedge.sectors[sector].opening).sin_cos();
-        [self.at[0] + distance * cos, self.at[1] + distance * sin]
+        let (sin, cos) = self.middle(sector).sin_cos();
+        let [x, y] = self.straightening.back([cos, sin], distance);
+        [self.at[0] + x, self.at[1] + y]
+    }
+
+    /// The gradient, in the plane, of what has this one at a point after the straightening.
+    pub(crate) fn gradient(&self, x: &[f64; 2], gradient: [f64; 2]) -> [f64; 2] {
+        self.straightening.gradient(self.relative(x), gradient)
+    }
+
+    /// Coordinates of a point from the vertex.
+    pub(crate) fn relative(&self, x: &[f64; 2]) -> [f64; 2] {
+        [x[0] - self.at[0], x[1] - self.at[1]]
     }
 
     /// The local problems at a vertex: one for every part of the domain that meets there.
@@ -374,7 +397,9 @@ impl Local {
         if !closed {
             rays.push((own[own.len() - 1] + 1) % vertex.rays.len());
         }
-        note(rays.iter().any(|&k| !vertex.rays[k].straight), Obstacle::Curved);
+        let straightening = Straightening::of(rays.iter().map(|&k| &vertex.rays[k]));
+        note(straightening.is_none(), Obstacle::Curved);
+        let straightening = straightening.unwrap_or_default();
         let beside = BESIDE * vertex.clear;
         let labels: Vec<u16> = own.iter().filter_map(|&k| vertex.sectors[k]).collect();
         let start = vertex.rays[own[0]].angle;
@@ -418,10 +443,11 @@ impl Local {
             along,
             at: vertex.at,
             start,
+            straightening,
             wedge,
             labels,
             faces,
-            clear: vertex.clear,
+            clear: vertex.clear.min(straightening.reach()),
             obstacle,
             exponents,
         })
@@ -442,7 +468,7 @@ impl Local {
 
     /// Sector, distance and angle from the sector's middle of a point; of a point on a ray, the sector of which `prefers` holds.
     pub(crate) fn place(&self, x: &[f64; 2], prefers: impl Fn(usize) -> bool) -> (usize, f64, f64) {
-        let (dx, dy) = (x[0] - self.at[0], x[1] - self.at[1]);
+        let [dx, dy] = self.straightening.straight(self.relative(x));
         let r = dx.hypot(dy);
         let sectors = &self.wedge.sectors;
         if r == 0.0 {
@@ -478,12 +504,23 @@ impl Local {
         (sector, r, turn - from - 0.5 * sectors[sector].opening)
     }
 
-    /// The point at a distance along a ray: that before sector k, or the last one.
-    fn on_ray(&self, ray: usize, distance: f64) -> [f64; 2] {
+    /// The direction of a ray: that before sector k, or the last one.
+    fn direction(&self, ray: usize) -> [f64; 2] {
         let turned: f64 = self.wedge.sectors[..ray].iter().map(|s| s.opening).sum();
         let (sin, cos) = (self.start + turned).sin_cos();
-        let [sin, cos] = [sin, cos].map(|x| if x.abs() < NO_COMPONENT { 0.0 } else { x });
-        [self.at[0] + distance * cos, self.at[1] + distance * sin]
+        [cos, sin].map(|x| if x.abs() < NO_COMPONENT { 0.0 } else { x })
+    }
+
+    /// The point at a distance along a ray.
+    fn on_ray(&self, ray: usize, distance: f64) -> [f64; 2] {
+        let [x, y] = self.straightening.back(self.direction(ray), distance);
+        [self.at[0] + x, self.at[1] + y]
+    }
+
+    /// What a flux there is multiplied by to be one through the straight ray.
+    fn stretch(&self, ray: usize, distance: f64) -> f64 {
+        let [x, y] = self.straightening.across(self.direction(ray), distance);
+        x.hypot(y)
     }
 
     /// Solves the local problem with its data and the polynomials of its sources; an obstacle where these have no values.
@@ -497,9 +534,14 @@ impl Local {
         wedge.sectors.iter_mut().zip(&scales.scale).for_each(|(sector, &scale)| sector.scale = scale);
         let functions: Vec<Harmonic> =
             self.exponents.iter().flat_map(|&(power, count)| wedge.functions(power, count)).collect();
-        let data_degree = (degree + DEGREES_BEYOND).min(HIGHEST_DEGREE);
+        // Along what was curved not even constants are polynomials.
+        let is_straight = self.straightening.is_identity();
+        let data_degree = if is_straight { degree + DEGREES_BEYOND } else { HIGHEST_DEGREE };
+        let data_degree = data_degree.min(HIGHEST_DEGREE);
         let (mut data, doubt) = self.data(problem, &wedge, scales, data_degree).ok_or(Obstacle::Data)?;
-        add_sources(&wedge, self.start, &scales.sources, &mut data);
+        let along = (scales.radius, data_degree);
+        let doubt_of_sources =
+            self.take_sources(&wedge, along, &scales.sources, &mut data).ok_or(Obstacle::Data)?;
         let largest = data.iter().flat_map(numbers).fold(0.0_f64, |m, x| m.max(x.abs()));
         let mut forced = Vec::new();
         for (power, mut data) in data.into_iter().enumerate() {
@@ -512,11 +554,14 @@ impl Local {
             .iter()
             .map(|s| square(-scales.radius * scales.radius / (4.0 * s.eta * s.scale)))
             .collect();
-        let mut unit = vec![RayData::default(); 3];
-        unit.iter_mut().for_each(|data| *data = empty(&wedge));
-        add_sources(&wedge, self.start, &units, &mut unit);
-        let unit = wedge.forced(2.0, &unit[2]).ok_or(Obstacle::Data)?;
-        let doubt = doubt.max(scales.doubt);
+        let mut unit_data = Vec::new();
+        self.take_sources(&wedge, along, &units, &mut unit_data).ok_or(Obstacle::Data)?;
+        let mut unit = Vec::new();
+        for (power, data) in unit_data.iter().enumerate().filter(|(_, data)| numbers(data).any(|x| x != 0.0))
+        {
+            unit.push(wedge.forced(power as f64, data).ok_or(Obstacle::Data)?);
+        }
+        let doubt = doubt.max(doubt_of_sources).max(scales.doubt);
         Ok(LocalSolution { functions, forced, unit, doubt, data_degree })
     }
 
@@ -530,8 +575,8 @@ impl Local {
     ) -> Option<(Vec<RayData>, f64)> {
         let radius = scales.radius;
         let mut doubt = 0.0_f64;
-        let mut polynomial = |value: &dyn Fn(f64) -> Option<f64>| {
-            let (factors, error) = along(radius, degree, value)?;
+        let mut polynomial = |ray: usize, value: &dyn Fn(f64) -> Option<f64>| {
+            let (factors, error) = self.along_ray(ray, (radius, degree), value)?;
             doubt = doubt.max(error);
             Some(factors)
         };
@@ -544,11 +589,11 @@ impl Local {
             let Some((jump, sign)) = between(problem.jumps, before, after) else { continue };
             let at = |t: f64| self.in_space(self.on_ray(ray + 1, t));
             if let Some(field) = &jump.value {
-                let values = polynomial(&|t| Some(sign * field.at(&at(t))))?;
+                let values = polynomial(ray + 1, &|t| Some(sign * field.at(&at(t))))?;
                 values.iter().enumerate().for_each(|(power, c)| all[power].values[ray] += c);
             }
             if let Some(field) = &jump.flux {
-                let fluxes = polynomial(&|t| Some(field.at(&at(t))))?;
+                let fluxes = polynomial(ray + 1, &|t| Some(field.at(&at(t)) * self.stretch(ray + 1, t)))?;
                 fluxes.iter().enumerate().for_each(|(power, c)| all[power + 1].fluxes[ray] += radius * c);
             }
         }
@@ -560,7 +605,7 @@ impl Local {
             let (out, eta) = (if k == 0 { -1.0 } else { 1.0 }, wedge.sectors[sector].eta);
             match end {
                 End::Dirichlet => {
-                    let values = polynomial(&|t| match condition(t)? {
+                    let values = polynomial(ray, &|t| match condition(t)? {
                         Condition::Dirichlet(value) => Some(value),
                         _ => None,
                     })?;
@@ -568,8 +613,8 @@ impl Local {
                     all[0].ends[k] -= scales.offset[sector];
                 }
                 End::Flux => {
-                    let fluxes = polynomial(&|t| match condition(t)?.as_flux(eta)? {
-                        (0.0, flux) => Some(flux),
+                    let fluxes = polynomial(ray, &|t| match condition(t)?.as_flux(eta)? {
+                        (0.0, flux) => Some(flux * self.stretch(ray, t)),
                         _ => None,
                     })?;
                     fluxes
@@ -580,6 +625,97 @@ impl Local {
             }
         }
         Some((all, doubt))
+    }
+    /// The polynomial of a degree in `t / radius` that has the values of a function along a ray, up to what is as far as the radius from
+    /// the vertex; and how far it is off.
+    fn along_ray(
+        &self,
+        ray: usize,
+        (radius, degree): (f64, usize),
+        value: &dyn Fn(f64) -> Option<f64>,
+    ) -> Option<(Vec<f64>, f64)> {
+        let extent = self.straightening.extent(self.direction(ray), radius);
+        let (mut factors, error) = along(extent, degree, value)?;
+        if extent != radius {
+            let by = radius / extent;
+            factors.iter_mut().enumerate().for_each(|(power, c)| *c *= by.powi(power as i32));
+        }
+        Some((factors, error))
+    }
+
+    /// Takes what polynomials in the sectors leave on the rays from the data; returns how far what stands for that is off.
+    fn take_sources(
+        &self,
+        wedge: &Wedge,
+        along: (f64, usize),
+        sources: &[Vec<Monomial>],
+        data: &mut Vec<RayData>,
+    ) -> Option<f64> {
+        let (sectors, mut doubt) = (wedge.sectors.len(), 0.0_f64);
+        for (k, (sector, source)) in
+            wedge.sectors.iter().zip(sources).enumerate().filter(|(_, s)| !s.1.is_empty())
+        {
+            for after in [false, true] {
+                let (powers, error) = self.source_along(k + usize::from(after), along, source)?;
+                doubt = doubt.max(error * sector.scale);
+                if data.len() < powers.len() {
+                    data.resize(powers.len(), empty(wedge));
+                }
+                for ([value, slope], data) in powers.into_iter().zip(data.iter_mut()) {
+                    let (value, flux) = (sector.scale * value, sector.eta * sector.scale * slope);
+                    match (wedge.ends, after) {
+                        (Some(ends), false) if k == 0 => {
+                            data.ends[0] -= if ends[0] == End::Dirichlet { value } else { flux };
+                        }
+                        (Some(ends), true) if k + 1 == sectors => {
+                            data.ends[1] -= if ends[1] == End::Dirichlet { value } else { flux };
+                        }
+                        _ => {
+                            let ray = if after { k } else { (k + sectors - 1) % sectors };
+                            // A jump is the later sector less the earlier one, and this sector is the earlier one of the ray
+                            // after it.
+                            let sign = if after { 1.0 } else { -1.0 };
+                            data.values[ray] += sign * value;
+                            data.fluxes[ray] += sign * flux;
+                        }
+                    }
+                }
+            }
+        }
+        Some(doubt)
+    }
+
+    /// A polynomial along a ray, and r times its derivative across: factors of the powers of r / R. How far they are off, too.
+    fn source_along(
+        &self,
+        ray: usize,
+        (radius, degree): (f64, usize),
+        source: &[Monomial],
+    ) -> Option<(Vec<[f64; 2]>, f64)> {
+        let direction = self.direction(ray);
+        if self.straightening.is_identity() {
+            let most = source.iter().map(|(e, _)| usize::from(e[0] + e[1])).max()?;
+            let mut powers = vec![[0.0; 2]; most + 1];
+            for monomial in source {
+                let (value, gradient) = value_and_gradient(&[*monomial], direction);
+                let [own_value, own_slope] = &mut powers[usize::from(monomial.0[0] + monomial.0[1])];
+                *own_value += value;
+                *own_slope += gradient[1] * direction[0] - gradient[0] * direction[1];
+            }
+            return Some((powers, 0.0));
+        }
+        let at = |t: f64| {
+            let x = self.straightening.back(direction, t).map(|x| x / radius);
+            let (value, gradient) = value_and_gradient(source, x);
+            let [across_x, across_y] = self.straightening.across(direction, t);
+            (value, gradient[0] * across_x + gradient[1] * across_y)
+        };
+        let (values, error) = self.along_ray(ray, (radius, degree), &|t| Some(at(t).0))?;
+        let (slopes, of_slopes) = self.along_ray(ray, (radius, degree), &|t| Some(at(t).1))?;
+        let mut powers = vec![[0.0; 2]; degree + 2];
+        powers.iter_mut().zip(values).for_each(|(power, value)| power[0] = value);
+        powers[1..].iter_mut().zip(slopes).for_each(|(power, slope)| power[1] = slope);
+        Some((powers, error.max(of_slopes)))
     }
 }
 
@@ -666,45 +802,16 @@ fn square(factor: f64) -> Vec<Monomial> {
     vec![([2, 0], factor), ([0, 2], factor)]
 }
 
-/// Takes what polynomials in the sectors leave on the rays from the data.
-fn add_sources(wedge: &Wedge, start: f64, sources: &[Vec<Monomial>], data: &mut Vec<RayData>) {
-    let most = sources.iter().flatten().map(|(e, _)| usize::from(e[0] + e[1])).max();
-    if let Some(most) = most.filter(|&most| most >= data.len()) {
-        data.resize(most + 1, empty(wedge));
+/// Value and gradient of a polynomial.
+pub(crate) fn value_and_gradient(polynomial: &[Monomial], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+    let mut sum = (0.0, [0.0; 2]);
+    for &([i, j], factor) in polynomial {
+        let (i, j) = (i32::from(i), i32::from(j));
+        sum.0 += factor * x.powi(i) * y.powi(j);
+        sum.1[0] += if i > 0 { factor * f64::from(i) * x.powi(i - 1) * y.powi(j) } else { 0.0 };
+        sum.1[1] += if j > 0 { factor * f64::from(j) * x.powi(i) * y.powi(j - 1) } else { 0.0 };
     }
-    let sectors = wedge.sectors.len();
-    let mut from = start;
-    for (k, (sector, source)) in wedge.sectors.iter().zip(sources).enumerate() {
-        let to = from + sector.opening;
-        for (after, angle) in [(false, from), (true, to)] {
-            let (sin, cos) = angle.sin_cos();
-            for &([i, j], factor) in source {
-                let (i, j) = (i32::from(i), i32::from(j));
-                let value = factor * cos.powi(i) * sin.powi(j);
-                let slope_x = if i > 0 { f64::from(i) * cos.powi(i - 1) * sin.powi(j) } else { 0.0 };
-                let slope_y = if j > 0 { f64::from(j) * cos.powi(i) * sin.powi(j - 1) } else { 0.0 };
-                let slope = factor * (slope_y * cos - slope_x * sin);
-                let (value, flux) = (sector.scale * value, sector.eta * sector.scale * slope);
-                let data = &mut data[(i + j) as usize];
-                match (wedge.ends, after) {
-                    (Some(ends), false) if k == 0 => {
-                        data.ends[0] -= if ends[0] == End::Dirichlet { value } else { flux };
-                    }
-                    (Some(ends), true) if k + 1 == sectors => {
-                        data.ends[1] -= if ends[1] == End::Dirichlet { value } else { flux };
-                    }
-                    _ => {
-                        let ray = if after { k } else { (k + sectors - 1) % sectors };
-                        // A jump is the later sector less the earlier one, and this sector is the earlier one of the ray after it.
-                        let sign = if after { 1.0 } else { -1.0 };
-                        data.values[ray] += sign * value;
-                        data.fluxes[ray] += sign * flux;
-                    }
-                }
-            }
-        }
-        from = to;
-    }
+    sum
 }
 
 /// The polynomial of a degree in `t / radius` that has the values of a function at Chebyshev points from 0 to the radius, and how far

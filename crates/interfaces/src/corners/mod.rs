@@ -1,18 +1,19 @@
-//! Vertices of interfaces and boundaries in the plane, where solutions are singular: `u ~ r^lambda`.
+//! Vertices of interfaces and boundaries in the plane, and edges in space, where solutions are singular: `u ~ r^lambda`.
 //!
-//! Where straight edges meet, the local solutions are known in closed form (`docs/corners.md`). [`corners()`] finds the vertices of a
+//! Where straight edges or circles meet, the local solutions are known in closed form (`docs/corners.md`). [`corners()`] finds the vertices or edges of a
 //! problem and says which of them have a solution that is no polynomial on every side; the sharp method uses the functions there in
 //! place of polynomials.
 
 mod local;
 mod rims;
+mod straightening;
 mod wedge;
 
 use meshless_geometry::{Domain, FaceId, Frame, PlanarPiece, PlanarPieces, RegionMap};
 
 use local::KnownWedges;
 pub use local::Obstacle;
-pub(crate) use local::{Local, LocalSolution, Monomial, Scales};
+pub(crate) use local::{Local, LocalSolution, Monomial, Scales, value_and_gradient};
 pub(crate) use rims::rims;
 
 use crate::{BoundaryData, Condition, InterfaceJump, Material, Problem};
@@ -128,6 +129,16 @@ pub(crate) fn broken_power<const D: usize>(
         None => exponent,
     };
     power.filter(|power| *power < order as f64)
+}
+
+/// The condition on the face of the boundary that a point is nearest to, within a distance.
+fn condition_at<const D: usize>(data: &CornerData<'_, D>, x: &[f64; D], step: f64) -> Option<Condition> {
+    let faces = (0..data.domain.faces().len() as u16).map(FaceId);
+    let feet = faces.filter_map(|face| {
+        let foot = data.domain.project_to_face(face, x).ok().filter(|foot| foot.distance.abs() < step)?;
+        data.boundary.condition(face, &foot.point).map(|condition| (foot.distance.abs(), condition))
+    });
+    feet.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, condition)| condition)
 }
 
 /// The points of the boundary where conditions change their kind or their values jump, inside of smooth pieces.

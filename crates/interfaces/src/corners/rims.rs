@@ -5,10 +5,10 @@
 
 use std::f64::consts::TAU;
 
-use meshless_geometry::{Cylinder, FaceId, Shape};
+use meshless_geometry::{Cylinder, Shape};
 
 use super::wedge::{End, Sector, Wedge};
-use super::{Corner, CornerData, Obstacle};
+use super::{Corner, CornerData, Obstacle, condition_at};
 use crate::Condition;
 
 /// How far from an edge what meets there is looked at, over the length of the edge.
@@ -23,8 +23,8 @@ const HALVINGS: usize = 40;
 /// How far from whole numbers an exponent may be for its function to count as a polynomial: rays are found by halving.
 const WHOLE: f64 = 1e-5;
 
-/// Edges that are looked at at most: of more boxes, what meets at them is told by the balance alone.
-const MOST_EDGES: usize = 5_000;
+/// Rims that are looked at at most.
+const MOST_RIMS: usize = 5_000;
 
 /// A point of an edge: where, two directions across it, the length of the edge.
 type Across = ([f64; 3], [[f64; 3]; 2], f64);
@@ -44,7 +44,7 @@ pub(crate) fn rims<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Ve
             of_cylinder(cylinder, &mut all);
         }
     }
-    if all.len() > MOST_EDGES {
+    if all.len() > MOST_RIMS {
         return Vec::new();
     }
     let mut found: Vec<Corner> = Vec::new();
@@ -138,18 +138,4 @@ fn end_at<const D: usize>(data: &CornerData<'_, D>, x: &[f64; D], step: f64) -> 
         Some(Condition::Dirichlet(_)) => End::Dirichlet,
         _ => End::Flux,
     }
-}
-
-/// The condition on the face of the boundary that a point is nearest to, within a distance.
-pub(super) fn condition_at<const D: usize>(
-    data: &CornerData<'_, D>,
-    x: &[f64; D],
-    step: f64,
-) -> Option<Condition> {
-    let faces = (0..data.domain.faces().len() as u16).map(FaceId);
-    let feet = faces.filter_map(|face| {
-        let foot = data.domain.project_to_face(face, x).ok().filter(|foot| foot.distance.abs() < step)?;
-        data.boundary.condition(face, &foot.point).map(|condition| (foot.distance.abs(), condition))
-    });
-    feet.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, condition)| condition)
 }

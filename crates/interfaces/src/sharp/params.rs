@@ -59,7 +59,7 @@ pub struct SharpParams {
     pub form: Form,
     /// Degree of the polynomials that sources are fitted by in Trefftz's form; `None` for one that suits the order.
     pub source_degree: Option<usize>,
-    /// Which nodes have a balance for a row; in the plane, and in steady problems.
+    /// Which nodes have a balance for a row; in two and three dimensions, in steady problems.
     pub conservation: Conservation,
     /// The equation has a `du/dt`: rows get a mass.
     pub unsteady: bool,

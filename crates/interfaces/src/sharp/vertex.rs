@@ -1,6 +1,6 @@
 //! Corner functions in place of polynomials: which fits take them, and what they are there.
 //!
-//! Near a vertex where straight edges of interfaces and boundaries meet, the polynomials of all parts of a stencil give way to one
+//! Near a vertex where straight edges or circles of interfaces and boundaries meet, the polynomials of all parts of a stencil give way to one
 //! set of functions `r^lambda Phi(theta)` that meets every condition there exactly, and to what the data add. Only values at nodes are
 //! rows of such a fit. Along a straight edge in space the same functions come with powers of the coordinate along it. See
 //! `docs/corners.md`.
@@ -14,6 +14,7 @@ use super::parts::Row;
 use super::unknowns::Unknowns;
 use crate::corners::{
     Corner, CornerData, Local, LocalSolution, Monomial, Obstacle, Scales, local_problems, rims,
+    value_and_gradient,
 };
 use crate::{Field, Problem};
 
@@ -27,7 +28,7 @@ const SHARE_OF_CLEAR: f64 = 0.5;
 /// Exponents from here on leave so little that polynomials without a balance do.
 const SEVERE: f64 = 2.0;
 
-/// Where a zone is narrower than it should be, what lies round it is balanced up to this many times as far as it should reach.
+/// Where a zone is narrower than it should be, or round curved rays, what lies round it is balanced up to this many times as far as it should reach.
 const BEYOND: f64 = 2.0;
 
 /// How far from an edge in space all is balanced, in spacings: as far as a stencil sees it.
@@ -84,7 +85,8 @@ pub(super) struct Vertex {
     /// How far from it fits take its functions even where they do not see it.
     zone: f64,
     held: bool,
-    /// Its functions leave much beyond the zone, which is narrower than it should be: other singular points are near.
+    /// Its functions leave much beyond the zone, which is narrower than it should be, as other singular points are near, or in which
+    /// what makes circles straight stretches distances.
     narrow: bool,
     /// Two prescribed values meet: a value right there says nothing.
     ambiguous: bool,
@@ -146,7 +148,7 @@ impl Vertices {
                             // Where an edge ends its functions are not those of the solution.
                             let distance = BALANCED_BESIDE_EDGE * spacing;
                             all.unserved.push(Unserved { local: local.clone(), distance });
-                        } else if vertex.zone < wanted && power < SEVERE {
+                        } else if (vertex.zone < wanted || !local.is_straight()) && power < SEVERE {
                             all.unserved.push(Unserved { local: local.clone(), distance: BEYOND * wanted });
                             vertex.narrow = power >= LEAST_BALANCED && !vertex.ambiguous;
                         }
@@ -364,7 +366,7 @@ impl Vertex {
         Ok(Self { local, solution, scales, terms, units, parts, zone, held, narrow: false, ambiguous })
     }
 
-    /// Whether other singular points are so near that its functions alone do not conserve heat, and fluxes beside it can be integrated.
+    /// Whether its functions alone do not conserve heat, and fluxes beside it can be integrated.
     pub(super) fn is_narrow(&self) -> bool {
         self.narrow
     }
@@ -428,16 +430,10 @@ impl Vertex {
             (self.local.coordinates(x), self.local.coordinates(center));
         let along = (along - middle_along) / reach;
         let (sector, r, z) = self.local.place(&across, |k| self.parts[k] == part);
-        let middle = {
-            let [a, b] = self.local.inside(sector, 1.0);
-            (b - self.local.at[1]).atan2(a - self.local.at[0])
-        };
-        let (sin, cos) = (middle + z).sin_cos();
+        let (sin, cos) = (self.local.middle(sector) + z).sin_cos();
         let cartesian = |[radial, around, along]: [f64; 3], unit: f64| -> [f64; D] {
-            frame.vector(
-                [(radial * cos - around * sin) / unit, (radial * sin + around * cos) / unit],
-                along / unit,
-            )
+            let straight = [radial * cos - around * sin, radial * sin + around * cos];
+            frame.vector(self.local.gradient(&across, straight).map(|slope| slope / unit), along / unit)
         };
         jet.values.clear();
         jet.gradients.clear();
@@ -453,25 +449,21 @@ impl Vertex {
         }
         let radius = self.scales.radius;
         let mut given = [(0.0, [0.0; D]); 2];
-        let forced = self.solution.forced.iter().map(|f| (0, f)).chain([(1, &self.solution.unit)]);
+        let forced =
+            self.solution.forced.iter().map(|f| (0, f)).chain(self.solution.unit.iter().map(|f| (1, f)));
         for (which, function) in forced {
             let [value, radial, around] = function.at(sector, r / radius, z);
             given[which].0 += value;
             let slope = cartesian([radial, around, 0.0], radius);
             given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
         }
-        let xi = [r * cos / radius, r * sin / radius];
+        let xi = self.local.relative(&across).map(|x| x / radius);
         for (which, polynomial) in [&self.scales.sources[sector], &self.units[sector]].into_iter().enumerate()
         {
-            for &([i, j], factor) in polynomial {
-                let (i, j) = (i32::from(i), i32::from(j));
-                given[which].0 += factor * xi[0].powi(i) * xi[1].powi(j);
-                let slope_x = if i > 0 { f64::from(i) * xi[0].powi(i - 1) * xi[1].powi(j) } else { 0.0 };
-                let slope_y = if j > 0 { f64::from(j) * xi[0].powi(i) * xi[1].powi(j - 1) } else { 0.0 };
-                let slope: [f64; D] =
-                    frame.vector([factor * slope_x / radius, factor * slope_y / radius], 0.0);
-                given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
-            }
+            let (value, slope) = value_and_gradient(polynomial, xi);
+            given[which].0 += value;
+            let slope: [f64; D] = frame.vector(slope.map(|slope| slope / radius), 0.0);
+            given[which].1.iter_mut().zip(slope).for_each(|(sum, s)| *sum += s);
         }
         given
     }

@@ -15,7 +15,7 @@ mod survey;
 
 pub(crate) use checks::{check_interfaces_touch, check_regions_are_met};
 pub(crate) use conditions::{Boundary, missing_condition};
-pub(crate) use corners::singular_corners;
+pub(crate) use corners::{AtCorners, singular_corners};
 pub(crate) use fields::{
     exact, field, jump_rates, jumps, materials, nodal_diffusivity, nodal_source, nodal_vorticity,
 };

@@ -4,6 +4,7 @@ use meshless_geometry::{
     Cloud, CloudParams, Domain, GapParams, GivenParams, RegionMap, around, check_size, generate,
 };
 
+use super::corners::{AtCorners, corner_spacings};
 use super::shapes::{explain_cloud, layout, regions, spacing};
 use crate::scene::{FilePoints, GapSpec, PointsFileSpec, Scene};
 use crate::{Error, MAX_NODES};
@@ -29,13 +30,13 @@ pub(crate) fn file_points<const D: usize>(
 }
 
 /// What is asked of a cloud that is generated.
-fn params<const D: usize>(scene: &Scene) -> CloudParams<D> {
-    CloudParams {
-        spacing: spacing(scene),
+fn params<const D: usize>(scene: &Scene, method: AtCorners) -> Result<CloudParams<D>, Error> {
+    Ok(CloudParams {
+        spacing: spacing(scene).at_most(corner_spacings(scene, method)?),
         layout: layout(scene),
         seed: scene.points.seed,
         max_nodes: MAX_NODES,
-    }
+    })
 }
 
 /// What is asked for in layers and gaps, if anything is.
@@ -44,11 +45,15 @@ fn gaps(scene: &Scene) -> Option<GapParams> {
 }
 
 /// About how many nodes the cloud of a scene will have.
-pub(super) fn estimated<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result<f64, Error> {
+pub(super) fn estimated<const D: usize>(
+    scene: &Scene,
+    method: AtCorners,
+    domain: &Domain<D>,
+) -> Result<f64, Error> {
     if let Some(file) = &scene.points.file {
         return Ok(file_points::<D>(scene, file)?.points.len() as f64);
     }
-    let params = params(scene);
+    let params = params(scene, method)?;
     let estimate = match gaps(scene).filter(|_| !scene.is_labelled()) {
         Some(gaps) => regions(scene)?.foresee_nodes(domain, &params, &gaps),
         None => check_size(domain, &params.spacing, params.max_nodes),
@@ -57,10 +62,14 @@ pub(super) fn estimated<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Re
 }
 
 /// The cloud and the regions of a scene.
-pub(crate) fn place<const D: usize>(scene: &Scene, domain: &Domain<D>) -> Result<Placed<D>, Error> {
+pub(crate) fn place<const D: usize>(
+    scene: &Scene,
+    method: AtCorners,
+    domain: &Domain<D>,
+) -> Result<Placed<D>, Error> {
     let regions = if scene.is_labelled() { RegionMap::new(vec![None])? } else { regions(scene)? };
     let Some(file) = &scene.points.file else {
-        let params = params(scene);
+        let params = params(scene, method)?;
         let made = match gaps(scene) {
             Some(gaps) => regions.generate(domain, &params, &gaps),
             None => generate(domain, &params),

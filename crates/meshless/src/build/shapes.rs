@@ -154,6 +154,9 @@ pub(crate) fn with_spacing_times(scene: &Scene, factor: f64) -> Scene {
         // What goes on in gaps is to be seen at both spacings.
         *gaps = GapSpec { least: factor * gaps.least, across: gaps.across / factor };
     }
+    if let Some(corners) = &mut coarse.points.corners {
+        corners.across /= factor;
+    }
     let ExprField { text, expr, .. } = &scene.points.spacing;
     let variables = &["x", "y", "z"][..scene.dimension];
     coarse.points.spacing.expr = match expr.as_constant() {

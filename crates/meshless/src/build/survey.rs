@@ -1,5 +1,6 @@
 //! What can be told about a scene without a cloud.
 
+use super::corners::AtCorners;
 use super::fields::materials;
 use super::points::{estimated, file_points};
 use super::shapes::{check_level_sets, domain, regions};
@@ -15,18 +16,18 @@ pub(crate) fn is_curved(scene: &Scene) -> bool {
 }
 
 /// About how many nodes the cloud will have; refused where they are too many.
-pub(crate) fn estimated_nodes(scene: &Scene) -> Result<f64, Error> {
+pub(crate) fn estimated_nodes(scene: &Scene, method: AtCorners) -> Result<f64, Error> {
     match scene.dimension {
-        1 => estimated_nodes_in::<1>(scene),
-        2 => estimated_nodes_in::<2>(scene),
-        _ => estimated_nodes_in::<3>(scene),
+        1 => estimated_nodes_in::<1>(scene, method),
+        2 => estimated_nodes_in::<2>(scene, method),
+        _ => estimated_nodes_in::<3>(scene, method),
     }
 }
 
-fn estimated_nodes_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
+fn estimated_nodes_in<const D: usize>(scene: &Scene, method: AtCorners) -> Result<f64, Error> {
     let domain = domain::<D>(scene)?;
     check_level_sets(scene, &domain)?;
-    estimated(scene, &domain)
+    estimated(scene, method, &domain)
 }
 
 /// Largest over smallest diffusivity: of the constants where all are constant, else of samples on a lattice.

@@ -67,7 +67,8 @@ impl<const D: usize> Discrete<D> {
         progress.stage(Stage::Points);
         let start = Instant::now();
         let domain = build::domain::<D>(scene)?;
-        let build::Placed { cloud, mut regions, labels: given } = build::place(scene, &domain)?;
+        let build::Placed { cloud, mut regions, labels: given } =
+            build::place(scene, plan.method.at_corners(scene), &domain)?;
         seconds.points = start.elapsed().as_secs_f64();
 
         progress.stage(Stage::Neighbors);

@@ -6,7 +6,8 @@
 //! irregular; expect a factor of three.
 //!
 //! A method that has a higher degree of itself on the same cloud is compared with that instead: the difference is the error but for
-//! that of the higher degree.
+//! that of the higher degree. On few nodes both comparisons are made, and the larger one counts
+//! where it is of a solution that is not resolved.
 //!
 //! Where the nodes do not see a layer, or stiff regions touch in a point, no comparison of theirs does, and there is no estimate.
 
@@ -24,6 +25,16 @@ use crate::{Error, build};
 
 /// Part of the size of u over all that is round-off in a region.
 const ROUND_OFF: f64 = 1e-13;
+
+/// Up to so many nodes two degrees may agree by chance, and a coarser cloud costs little: then both comparisons are made.
+const FEW: usize = 1000;
+
+/// Degrees agree by chance only where neither resolves the solution. A comparison with a coarser cloud that says less than this is
+/// of a smooth solution, where errors fall faster than the order promises, and two degrees tell more.
+const RESOLVED: f64 = 1e-3;
+
+/// Variation of u in a region, over its size, below which u is constant there: the region is stiff.
+const CONSTANT: f64 = 1e-3;
 
 /// Spacing of the coarser cloud over that of the finer one.
 const RATIO: f64 = 2.0;
@@ -92,7 +103,16 @@ pub(crate) fn estimate<const D: usize>(
         return Ok(Estimated::none(why_not));
     }
     let estimated = match plan.finer() {
-        Some(finer) => against_finer(scene, plan, finer, solved)?,
+        Some(finer) => {
+            let mut estimated = against_finer(scene, plan, finer, solved)?;
+            if estimated.estimate.l2.is_some() && solved.discrete.cloud.len() <= FEW {
+                let coarser = against_coarser(scene, plan, solved)?;
+                if coarser.l2.is_some_and(|l2| l2 > RESOLVED) {
+                    take_larger(&mut estimated.estimate, &coarser);
+                }
+            }
+            estimated
+        }
         None => against_coarser(scene, plan, solved)?.into(),
     };
     if estimated.estimate.l2.is_some_and(|l2| !l2.is_finite()) {
@@ -100,6 +120,16 @@ pub(crate) fn estimate<const D: usize>(
         return Ok(Estimated { differences: estimated.differences, ..Estimated::none(why_not) });
     }
     Ok(estimated)
+}
+
+/// The larger of two estimates, for the whole and for every region that both have.
+fn take_larger(estimate: &mut Estimate, other: &Estimate) {
+    if let (Some(l2), Some(more)) = (&mut estimate.l2, other.l2) {
+        *l2 = l2.max(more);
+    }
+    for (name, own) in &mut estimate.regions {
+        *own = other.regions.get(name).map_or(*own, |more| own.max(*more));
+    }
 }
 
 /// Norms over all nodes and over those of each region.
@@ -162,8 +192,49 @@ fn against_finer<const D: usize>(
     {
         norms.add(label, measure, difference, better);
     }
-    let (estimate, differences) = (norms.estimate(scene, 1.0), Some(differences));
+    let mut estimate = norms.estimate(scene, 1.0);
+    let constants = of_constants(scene, solved, &differences, &measures);
+    take_larger(&mut estimate, &Estimate { regions: constants, ..Estimate::default() });
+    let differences = Some(differences);
     Ok(Estimated { estimate, differences, finer: Some((finer, better)) })
+}
+
+/// Relative errors of regions in which u is constant: two solutions may agree by chance in one number, but that is known from the
+/// fluxes round the region, no better than what is outside. Errors there count by what they drive.
+fn of_constants<const D: usize>(
+    scene: &Scene,
+    solved: &Solved<D>,
+    differences: &[f64],
+    measures: &[f64],
+) -> BTreeMap<String, f64> {
+    /// Sums over the nodes of a region.
+    #[derive(Debug, Clone, Copy, Default)]
+    struct Sums {
+        measure: f64,
+        u: f64,
+        squares: f64,
+        conducted: f64,
+        errors: f64,
+    }
+    let eta = solved.discrete.problem().eta;
+    let mut sums = vec![Sums::default(); scene.regions.len()];
+    for (i, (&label, &measure)) in solved.discrete.labels.iter().zip(measures).enumerate() {
+        let (sum, u, conducted) = (&mut sums[label as usize], solved.system.u[i], measure * eta[i]);
+        sum.measure += measure;
+        sum.u += measure * u;
+        sum.squares += measure * u * u;
+        sum.conducted += conducted;
+        sum.errors += conducted * differences[i].powi(2);
+    }
+    let is_constant = |s: &Sums| {
+        let mean_square = s.squares / s.measure;
+        mean_square - (s.u / s.measure).powi(2) < CONSTANT.powi(2) * mean_square
+    };
+    let (conducted, errors) = (sums.iter().filter(|s| s.measure > 0.0 && !is_constant(s)))
+        .fold((0.0, 0.0), |(c, e), s| (c + s.conducted, e + s.errors));
+    let error = if conducted > 0.0 { (errors / conducted).sqrt() } else { 0.0 };
+    let constant = scene.regions.iter().zip(&sums).filter(|(_, s)| s.measure > 0.0 && is_constant(s));
+    constant.map(|(region, s)| (region.name.clone(), error / (s.squares / s.measure).sqrt())).collect()
 }
 
 fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>) -> Result<Estimate, Error> {
@@ -203,12 +274,14 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
     } else {
         0.0
     };
-    let mut norms = Norms::of(scene);
-    differences.iter().for_each(|&(measure, difference, value, region)| {
-        norms.add(region, measure, difference - shift, value);
-    });
     // Points from a file can only be thinned as they are.
     let nodes = [fine, &coarse].map(|solved| solved.discrete.cloud.len() as f64);
     let ratio = if scene.points.file.is_some() { (nodes[0] / nodes[1]).powf(1.0 / D as f64) } else { RATIO };
-    Ok(norms.estimate(scene, ratio.powi(plan.expected_order() as i32) - 1.0))
+    let times = ratio.powi(plan.expected_order() as i32) - 1.0;
+    let mut norms = Norms::of(scene);
+    differences.iter().for_each(|&(measure, difference, value, region)| {
+        // Relative to the extrapolated solution: the size of one that is far off says nothing of its error.
+        norms.add(region, measure, difference - shift, value - (difference - shift) / times);
+    });
+    Ok(norms.estimate(scene, times))
 }

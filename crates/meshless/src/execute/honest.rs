@@ -13,6 +13,9 @@ const ALONE: f64 = 10.0;
 /// The same where a better solution, or better fits, leave as much over.
 const MORE: f64 = 3.0;
 
+/// Part of the whole that must be left over, beyond doubt, to be no error of fluxes alone: then all of u is off, in every region.
+const GROSS: f64 = 0.1;
+
 /// Part of what a solution leaves over below which the better one shows that it is only the flux that is less accurate than u.
 const GETS_BETTER: f64 = 0.5;
 
@@ -27,7 +30,7 @@ pub(crate) struct Reason {
     pub(crate) regions: Vec<(String, f64)>,
 }
 
-/// Whether more is left over than the estimate says.
+/// Whether more is left over than the estimate says, or so much that all regions are off.
 pub(crate) fn suspects<const D: usize>(
     scene: &Scene,
     ledger: &Ledger<D>,
@@ -38,7 +41,9 @@ pub(crate) fn suspects<const D: usize>(
     let more = |left: &LeftOver, estimated: Option<f64>| estimated.is_some_and(|e| left.relative > e);
     let of_region = |name: &str| estimate.regions.get(name).copied();
     let named = scene.regions.iter().map(|region| of_region(&region.name)).zip(&regions);
-    more(&whole, estimate.l2) || named.into_iter().any(|(estimated, left)| more(left, estimated))
+    whole.relative > GROSS
+        || more(&whole, estimate.l2)
+        || named.into_iter().any(|(estimated, left)| more(left, estimated))
 }
 
 /// What the balance says, in view of the fluxes of a better solution, or by better fits.
@@ -68,11 +73,25 @@ pub(crate) fn by_balance<const D: usize>(
         let raised = says(left, other.as_ref().map(|(_, regions)| regions[k]), estimated)?;
         Some((region.name.clone(), raised))
     });
-    Reason {
-        by: "balance",
-        whole: estimate.l2.and_then(|l2| says(whole, other.as_ref().map(|(whole, _)| *whole), l2)),
-        regions: named.collect(),
+    let of_whole = estimate.l2.and_then(|l2| says(whole, other.as_ref().map(|(whole, _)| *whole), l2));
+    let regions = named.collect();
+    match gross(whole, other.as_ref().map(|(whole, _)| *whole)) {
+        None => Reason { by: "balance", whole: of_whole, regions },
+        Some(error) => {
+            let all = scene.regions.iter().map(|region| (region.name.clone(), error));
+            Reason {
+                by: "balance",
+                whole: Some(of_whole.map_or(error, |w| w.max(error))),
+                regions: all.chain(regions).collect(),
+            }
+        }
     }
+}
+
+/// The part of the whole that is left over, where that is much.
+fn gross(first: LeftOver, second: Option<LeftOver>) -> Option<f64> {
+    let gets_better = second.is_some_and(|second| second.relative < GETS_BETTER * first.relative);
+    (!gets_better && first.relative - first.doubt > GROSS).then_some(first.relative)
 }
 
 /// Raises an estimate to what the reasons say.
@@ -114,6 +133,13 @@ mod tests {
         assert_eq!((estimate.l2, estimate.compared), (Some(0.2), Some(1e-3)));
         assert_eq!((estimate.regions["a"], estimate.regions["b"]), (0.3, 1e-2));
         assert_eq!(estimate.raised_by.as_deref(), Some("balance"));
+    }
+
+    #[test]
+    fn much_left_over_is_an_error_of_all_regions() {
+        let left = |relative: f64| LeftOver { absolute: 1.0, relative, doubt: 0.0 };
+        assert_eq!(gross(left(0.3), None), Some(0.3));
+        assert_eq!((gross(left(0.05), None), gross(left(0.3), Some(left(0.1)))), (None, None));
     }
 
     #[test]

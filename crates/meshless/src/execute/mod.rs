@@ -266,7 +266,7 @@ fn execute_in<const D: usize>(
         let reasons = [honest::by_balance(scene, ledger, flows, other.as_ref(), &estimate)];
         honest::raise(&mut estimate, &reasons);
     }
-    honest::raise(&mut estimate, &[corners::reason(scene, &problem, &corners)]);
+    honest::raise(&mut estimate, &[corners::reason(scene, &problem, u, &corners)]);
     seconds.balance += before.elapsed().as_secs_f64();
     let before = Instant::now();
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, plan, &solved)).transpose()?;
@@ -276,7 +276,7 @@ fn execute_in<const D: usize>(
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
     let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
-    let corners = corners::report(&corners);
+    let corners = corners::report(&corners, problem.domain.bounds().diameter());
     let report = Report { fallback, thin_layer, contacts, corners, fluxes, balance, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);
     Ok(Solution { report, field, picture, frames, particles: None })

@@ -159,12 +159,13 @@ impl Survey {
         note(build::is_curved(scene), Effect::CurvedBoundary);
         let [count, degenerate] = build::triangle_counts(scene)?;
         note(count > 0, Effect::Triangles { count, degenerate });
-        note(
-            scene.points.spacing.expr.as_constant().is_none() || scene.points.gaps.is_some(),
-            Effect::GradedCloud,
-        );
         let corners =
             build::singular_corners(&scene.at_time(0.0), scene.method.order.unwrap_or(LEAST_ORDER))?;
+        let adapts = scene.points.corners.is_some() && !corners.is_empty();
+        note(
+            scene.points.spacing.expr.as_constant().is_none() || scene.points.gaps.is_some() || adapts,
+            Effect::GradedCloud,
+        );
         if let Some(exponent) = corners.iter().map(|corner| corner.exponent).min_by(f64::total_cmp) {
             effects.push(Effect::Corners { count: corners.len(), exponent });
         }

@@ -16,6 +16,7 @@ mod steps;
 use meshless_sparse::SolverParams;
 
 use crate::Error;
+use crate::build::AtCorners;
 use crate::scene::{MethodName, Scene};
 
 pub use accuracy::AccuracyPlan;
@@ -37,6 +38,8 @@ pub struct Plan {
     pub fallback: Option<MethodName>,
     /// The smallest spacing that gaps and layers are refined to; `None` where the cloud does not know of them.
     pub refine_gaps_to: Option<f64>,
+    /// Whether the cloud is finer round corners at which the solution is singular.
+    pub adapts: bool,
     /// The linear solver.
     pub solver: SolverParams,
     /// The error to reach by smaller and smaller spacings; without one the scene is solved once.
@@ -60,6 +63,14 @@ pub struct MethodPlan {
     pub support: f64,
     /// Its parameters.
     pub params: MethodParams,
+}
+
+impl MethodPlan {
+    /// What it makes of the corners of a scene.
+    pub(crate) fn at_corners(&self, scene: &Scene) -> AtCorners {
+        let serves = self.name == MethodName::Sharp && scene.time.is_none();
+        AtCorners { order: self.params.order(), serves }
+    }
 }
 
 /// A step of the execution.
@@ -172,8 +183,10 @@ impl Plan {
             };
             return Err(scene.domain.place.error(message, help).into());
         }
+        let has_corners = survey.has(|effect| matches!(effect, Effect::Corners { .. }));
         Ok(Self {
             dimension: scene.dimension,
+            adapts: scene.points.corners.is_some() && has_corners,
             effects: survey.effects,
             fallback: fallback::of(scene, &method),
             refine_gaps_to: scene.points.gaps.map(|gaps| gaps.least),

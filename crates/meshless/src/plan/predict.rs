@@ -86,7 +86,7 @@ const FINER_BALANCE: f64 = 1.4;
 const BASE_MEMORY_MB: f64 = 10.0;
 
 pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Result<Predicted, Error> {
-    let unknowns = build::estimated_nodes(scene)?;
+    let unknowns = build::estimated_nodes(scene, method.at_corners(scene))?;
     let rates = &RATES[scene.dimension - 1];
     let steps = method.params.steps(survey);
     let varies = survey.has(|effect| matches!(effect, Effect::VariableDiffusivity));

@@ -102,6 +102,12 @@ impl fmt::Display for Plan {
                 thin_layers::RESOLVED
             )?;
         }
+        if self.adapts {
+            writeln!(
+                f,
+                "cloud       finer round the corners, and growing by a quarter of the distance from there"
+            )?;
+        }
         writeln!(f, "solver      {}", self.solver_name())?;
         if let Some([forward, back]) = self.transforms() {
             writeln!(f, "transforms  forward: {}; back: {}", forward.join(", "), back.join(", "))?;

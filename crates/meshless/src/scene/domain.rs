@@ -14,7 +14,8 @@ use super::points_file::PointsFileSpec;
 use super::reader::{Table, Value};
 use super::shapes::{bounds, keys_with_shape, required_shape};
 use super::spec::{
-    ALL_FACES, BOX_FACES, DomainSpec, GapSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec, ShapeSpec,
+    ALL_FACES, BOX_FACES, CornerSpec, DomainSpec, GapSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec,
+    ShapeSpec,
 };
 
 /// Seed of the random numbers, unless the scene gives one.
@@ -22,6 +23,12 @@ const DEFAULT_SEED: u64 = 1;
 
 /// The key of `[points]` that has gaps refined.
 const GAPS: &str = "refine_gaps_to";
+
+/// The key of `[points]` that has the cloud adapt.
+const ADAPT: &str = "adapt";
+
+/// Spacings on the way from a corner to what is next to it: with fewer, corner functions have too few nodes.
+const ACROSS: f64 = 8.0;
 
 pub(super) fn domain(root: &Table<'_>) -> Result<DomainSpec, SceneError> {
     let table = root.require("domain")?.table()?;
@@ -89,12 +96,13 @@ pub(super) fn points(
                 seed: DEFAULT_SEED,
                 file: None,
                 gaps: None,
+                corners: adapts(root, refined).then_some(CornerSpec { across: ACROSS }),
                 place: place.clone(),
             }),
             None => Err(root.missing("points", help)),
         };
     };
-    table.allow(&["spacing", "layout", "seed", "file", GAPS])?;
+    table.allow(&["spacing", "layout", "seed", "file", GAPS, ADAPT])?;
     if let Some(value) = table.get("file") {
         return points_of_file(&table, &value, accuracy);
     }
@@ -105,6 +113,7 @@ pub(super) fn points(
     Ok(PointsSpec {
         file: None,
         gaps: gaps(&table, layout, is_open(root))?,
+        corners: adapted(&table, layout, root, refined)?,
         spacing: match (table.get("spacing"), first()) {
             (Some(value), _) => in_range(value.expression()?.check_positive()?)?,
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
@@ -144,6 +153,37 @@ fn gaps(table: &Table<'_>, layout: LayoutName, open: bool) -> Result<Option<GapS
     Ok(Some(GapSpec { least: value.positive()?, across: thin_layers::RESOLVED }))
 }
 
+/// Whether the cloud of a scene adapts to corners where it says nothing of that: steady ones in the plane, that ask for a tolerance.
+fn adapts(root: &Table<'_>, refined: bool) -> bool {
+    refined && root.dimension == 2 && !root.has("time") && !is_open(root)
+}
+
+/// Whether the cloud adapts to corners.
+fn adapted(
+    table: &Table<'_>,
+    layout: LayoutName,
+    root: &Table<'_>,
+    refined: bool,
+) -> Result<Option<CornerSpec>, SceneError> {
+    let adapted = Some(CornerSpec { across: ACROSS });
+    let Some(value) = table.get(ADAPT) else {
+        let is_irregular = layout == LayoutName::Irregular;
+        return Ok(adapted.filter(|_| is_irregular && adapts(root, refined)));
+    };
+    if !value.boolean()? {
+        return Ok(None);
+    }
+    if layout != LayoutName::Irregular {
+        let help = "take the layout \"irregular\", or leave the key out";
+        return Err(value.error("only irregular clouds can adapt", help));
+    }
+    if root.dimension != 2 || is_open(root) {
+        let help = "grade the cloud by an expression as `spacing`, or leave the key out";
+        return Err(value.error("clouds adapt in the plane only, within a domain", help));
+    }
+    Ok(adapted)
+}
+
 /// Points from a file; how far apart they are can be left to their number.
 fn points_of_file(
     table: &Table<'_>,
@@ -154,7 +194,7 @@ fn points_of_file(
         let message = "points from a file cannot be refined until a tolerance is reached";
         return Err(spec.place.error(message, "remove the section, and judge by the reported estimate"));
     }
-    for key in ["layout", "seed", GAPS] {
+    for key in ["layout", "seed", GAPS, ADAPT] {
         if let Some(value) = table.get(key) {
             return Err(value.error(format!("points from a file have no {key}"), "remove the key"));
         }
@@ -168,6 +208,7 @@ fn points_of_file(
         layout: LayoutName::Irregular,
         seed: DEFAULT_SEED,
         gaps: None,
+        corners: None,
         file: Some(PointsFileSpec { path: PathBuf::from(file.text()?), spaced, thin: 1.0, place }),
         place: table.place.clone(),
     })

@@ -45,9 +45,9 @@ pub(crate) use points_file::FilePoints;
 pub use points_file::PointsFileSpec;
 pub use source::{MAX_FILE_BYTES, Place};
 pub use spec::{
-    BoundarySpec, BoundsSpec, ConditionSpec, DomainSpec, GapSpec, HoleSpec, InterfaceSpec, LayoutName,
-    MethodName, MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec, SlitConditionSpec,
-    SlitSpec, SolverName, SurfaceSpec,
+    BoundarySpec, BoundsSpec, ConditionSpec, CornerSpec, DomainSpec, GapSpec, HoleSpec, InterfaceSpec,
+    LayoutName, MethodName, MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec,
+    SlitConditionSpec, SlitSpec, SolverName, SurfaceSpec,
 };
 
 pub use time::TimeSpec;

@@ -137,6 +137,8 @@ pub struct PointsSpec {
     pub file: Option<PointsFileSpec>,
     /// How far gaps and layers are refined, if they are.
     pub gaps: Option<GapSpec>,
+    /// What spacings corners get at which the solution is singular, if they get any of their own.
+    pub corners: Option<CornerSpec>,
     /// The table in the file.
     pub place: Place,
 }
@@ -147,6 +149,13 @@ pub struct GapSpec {
     /// The smallest one, positive.
     pub least: f64,
     /// So many go on the way through a layer.
+    pub across: f64,
+}
+
+/// What spacings corners get at which the solution is singular.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CornerSpec {
+    /// So many go on the way to what is next to a corner.
     pub across: f64,
 }
 

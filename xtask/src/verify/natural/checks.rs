@@ -59,20 +59,25 @@ fn accuracy(runner: &Runner<'_>, case: &Case, parameter: f64, bound: &Bound, cla
     let closed = run.is_some_and(|run| run.report.errors.is_some());
     let over =
         if closed { "relative maximum error" } else { "largest error of a probe, over u in its region" };
+    let why = bound.missed.as_ref().map(|m| m.why);
     let mut at_most =
-        |claim: String, measured: Option<f64>, bound: f64, missed: Option<f64>| match case.missed.zip(missed)
-        {
-            Some(((.., why), missed)) => {
+        |claim: String, measured: Option<f64>, bound: f64, missed: Option<f64>| match missed.zip(why) {
+            Some((missed, why)) => {
                 claims.explained(case.case, claim, measured, [0.0, bound], [bound, missed], why);
             }
             None => claims.at_most(case.case, claim, measured, bound),
         };
     if case.probes {
         let values = judged.and_then(|j| j.values).map(|v| v[1]);
-        at_most(format!("{what}: {over}"), values, bound.values, case.missed.map(|m| m.0));
+        at_most(format!("{what}: {over}"), values, bound.values, bound.missed.as_ref().map(|m| m.values));
     }
     if !case.conditions.is_empty() {
         let flux = judged.and_then(|j| j.flux);
-        at_most(format!("{what}: largest error of a flux"), flux, bound.flux, case.missed.map(|m| m.1));
+        at_most(
+            format!("{what}: largest error of a flux"),
+            flux,
+            bound.flux,
+            bound.missed.as_ref().map(|m| m.flux),
+        );
     }
 }

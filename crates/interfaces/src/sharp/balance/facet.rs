@@ -289,6 +289,7 @@ impl<'a> Facet<'a> {
         self.vertices.iter().all(is_apart).then_some(usize::from(positive))
     }
 
+    /// How far the polygon or a surface beside it may reach beyond the vertices, over their largest distance.
     fn bulge(&self, by: &Surface<'_>) -> f64 {
         let turn = |surface: &Surface<'_>| {
             let first = surface.normal(&self.vertices[0]);

@@ -21,6 +21,9 @@ use crate::{InterfaceFlux, MethodError, parallel};
 use faces::{Beyond, Face, Faces};
 use flux::Flux;
 
+/// Exchange over the conductance of one spacing from which on it holds a value. With 1 the flux of ISO 10211 case 4 is 3.7 % off for 1.8 %.
+const HOLDS: f64 = 30.0;
+
 /// Points along the way from a node to its cell's surface at which a source is asked for.
 const SOURCE_POINTS: usize = 5;
 
@@ -40,7 +43,7 @@ pub(super) fn replace<const D: usize>(
                 _ => row.crosses || maker.vertices.leaves_much(&maker.problem.cloud.points()[row.node]),
             },
             Conservation::All => true,
-        };
+        } && !holds(maker, row.node);
     }
     // In time a row has a mass that belongs to its collocation.
     if D == 1 || maker.rates.is_some() || !wanted.contains(&true) {
@@ -55,6 +58,13 @@ pub(super) fn replace<const D: usize>(
         }
     }
     Ok(if has_edges(maker) { through_interfaces(maker, &faces, &fluxes) } else { Vec::new() })
+}
+
+/// Whether a wall exchanges so much with what is outside that it all but prescribes the value of a node. The balance of such a node would
+/// be that of its wall alone, in which its own value is one of many: where an interface is near, such rows have solutions of high frequency.
+fn holds<const D: usize>(maker: &Maker<'_, D>, i: usize) -> bool {
+    let way = maker.problem.cloud.spacing()[i] / maker.problem.eta[i];
+    maker.boundary_rows[i].iter().any(|row| row.exchange * way > HOLDS)
 }
 
 /// Whether slopes are infinite at edges in space, along which their integrals find no size. In the plane those stay: beside a vertex without

@@ -30,7 +30,7 @@ struct Geometry<'a, 'b, const D: usize> {
     regions: &'b [OfRegion<2>],
     lists: Vec<CellList<'b, 2>>,
     rule: Vec<(f64, f64)>,
-    rule_from_vertex: Vec<(f64, f64)>,
+    rule_relative: Vec<(f64, f64)>,
 }
 
 fn wide<const D: usize>(x: &[f64; 2]) -> [f64; D] {
@@ -50,8 +50,8 @@ pub(super) fn pieces<const D: usize>(
     let regions = OfRegion::all(problem, flat);
     let lists = OfRegion::lists(&regions, problem)?;
     let rule = gauss(maker.params.degree() / 2 + POINTS_BEYOND);
-    let rule_from_vertex = gauss_from_corner(POINTS_FROM_VERTEX);
-    let geometry = Geometry { problem, maker, regions: &regions, lists, rule, rule_from_vertex };
+    let rule_relative = gauss_from_corner(POINTS_FROM_VERTEX);
+    let geometry = Geometry { problem, maker, regions: &regions, lists, rule, rule_relative };
     let cells = parallel::map_with(problem.cloud.len(), CellScratch::default, |scratch, i| {
         if wanted[i] { geometry.cell(i, scratch) } else { None }
     });
@@ -105,8 +105,8 @@ impl<const D: usize> Geometry<'_, '_, D> {
             let ends = [from, to].map(|t| self.maker.vertices.is_one_at(&place(t)));
             let near = away(&place(middle)) < apart(place(from), place(to));
             let ([begin, end], rule) = match ends {
-                [true, false] => ([from, to], &self.rule_from_vertex),
-                [false, true] => ([to, from], &self.rule_from_vertex),
+                [true, false] => ([from, to], &self.rule_relative),
+                [false, true] => ([to, from], &self.rule_relative),
                 [false, false] if !near || halvings == MOST_HALVINGS => ([from, to], &self.rule),
                 _ => {
                     waiting.extend([([middle, to], halvings + 1), ([from, middle], halvings + 1)]);

@@ -35,8 +35,8 @@ const TANGENT_HALVINGS: usize = 40;
 /// Points of a panel that begins at a corner, where fluxes may be infinite.
 const POINTS_FROM_CORNER: usize = 16;
 
-/// Length of such a panel in spacings: alike on both sides of a corner, where infinite fluxes may cancel. And the part of a panel
-/// that it takes at most.
+/// Length of such a panel in spacings: alike on both sides of a corner, where infinite fluxes may cancel. And what it takes of a
+/// whole part at most.
 const FROM_CORNER: f64 = 1.0;
 const MOST_FROM_CORNER: f64 = 0.8;
 
@@ -288,20 +288,25 @@ impl<const D: usize> Rule<'_, D> {
         if !of_corners || panels.is_empty() {
             return panels;
         }
-        // Where the panel of a corner ends, within the one that is there.
-        let towards = |end: f64, other: f64| {
-            let length = FROM_CORNER * (self.spacing)(&patch.at(at(end)).at) / patch.extent[axis];
-            end + (other - end).signum() * length.min(MOST_FROM_CORNER * (other - end).abs())
+        // Where the panel of a corner ends: others make way, or it would not be as long as that on the other side.
+        let most = if both { 0.5 * MOST_FROM_CORNER } else { MOST_FROM_CORNER } * (part.to - part.from);
+        let length = |end: f64| {
+            let spacing = (self.spacing)(&patch.at(at(end)).at);
+            (FROM_CORNER * spacing / patch.extent[axis]).min(most)
         };
-        if let Some(last) = panels.last_mut().filter(|_| part.corners[1]) {
-            let cut = towards(part.to, last.0);
-            last.1 = cut;
+        if part.corners[1] {
+            let cut = part.to - length(part.to);
+            while panels.last().is_some_and(|last| last.0 >= cut) {
+                panels.pop();
+            }
+            panels.last_mut().into_iter().for_each(|last| last.1 = cut);
             panels.push((part.to, cut));
         }
         if part.corners[0] {
-            let first = &mut panels[0];
-            let cut = towards(part.from, first.1);
-            first.0 = cut;
+            let cut = part.from + length(part.from);
+            let covered = panels.iter().take_while(|panel| panel.0.max(panel.1) <= cut).count();
+            panels.drain(..covered);
+            panels.first_mut().into_iter().for_each(|first| first.0 = cut);
             panels.insert(0, (part.from, cut));
         }
         panels
