@@ -30,6 +30,9 @@ const WEAK: f64 = 2.0;
 /// Part of the largest coefficient of data below which one is rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// Part of the data that polynomials may miss and count as meeting them: rounding of polynomials of degree 14.
+const MET: f64 = 1e-10;
+
 /// Part of what the source and the data do at a vertex below which a logarithm or a function of the angle is rounding, or the error
 /// of the polynomials that stand for the data.
 const NEGLIGIBLE: f64 = 1e-7;
@@ -523,11 +526,12 @@ impl Local {
         x.hypot(y)
     }
 
-    /// Solves the local problem with its data and the polynomials of its sources; an obstacle where these have no values.
+    /// Solves the local problem with its data and the polynomials of its sources, to which those are added that meet the data by
+    /// themselves; an obstacle where these have no values.
     pub(crate) fn solve<const D: usize>(
         &self,
         problem: &CornerData<'_, D>,
-        scales: &Scales,
+        scales: &mut Scales,
         degree: usize,
     ) -> Result<LocalSolution, Obstacle> {
         let mut wedge = self.wedge.clone();
@@ -542,6 +546,9 @@ impl Local {
         let along = (scales.radius, data_degree);
         let doubt_of_sources =
             self.take_sources(&wedge, along, &scales.sources, &mut data).ok_or(Obstacle::Data)?;
+        if !is_straight {
+            self.meet_data(&wedge, along, degree, &mut scales.sources, &mut data);
+        }
         let largest = data.iter().flat_map(numbers).fold(0.0_f64, |m, x| m.max(x.abs()));
         let mut forced = Vec::new();
         for (power, mut data) in data.into_iter().enumerate() {
@@ -626,6 +633,48 @@ impl Local {
         }
         Some((all, doubt))
     }
+
+    /// Adds harmonic polynomials of a degree to those of the sources where together they meet all data, of which nothing is left then. So
+    /// solutions that are polynomials are exact, as they are at straight rays: those that are made straight know them as series.
+    fn meet_data(
+        &self,
+        wedge: &Wedge,
+        along: (f64, usize),
+        degree: usize,
+        sources: &mut [Vec<Monomial>],
+        data: &mut [RayData],
+    ) -> Option<()> {
+        let left = on_rays(data);
+        if left.iter().all(|x| *x == 0.0) {
+            return None;
+        }
+        let candidates: Vec<(usize, Vec<Monomial>)> = (0..sources.len())
+            .flat_map(|sector| harmonic_polynomials(degree).into_iter().map(move |p| (sector, p)))
+            .collect();
+        let mut columns = Vec::with_capacity(candidates.len());
+        for (sector, polynomial) in &candidates {
+            let mut alone = vec![Vec::new(); sources.len()];
+            alone[*sector].clone_from(polynomial);
+            let mut taken = vec![empty(wedge); data.len()];
+            self.take_sources(wedge, along, &alone, &mut taken)?;
+            columns.push(on_rays(&taken));
+        }
+        let size = |row: usize| columns.iter().map(|column| column[row].abs()).fold(left[row].abs(), f64::max);
+        let sizes: Vec<f64> = (0..left.len()).map(size).map(|size| if size > 0.0 { size } else { 1.0 }).collect();
+        let matrix = DMatrix::from_fn(left.len(), columns.len(), |row, k| columns[k][row] / sizes[row]);
+        let wanted = DVector::from_fn(left.len(), |row, _| -left[row] / sizes[row]);
+        let svd = matrix.clone().svd(true, true);
+        let factors = svd.solve(&wanted, ROUNDING * svd.singular_values.max()).ok()?;
+        if (matrix * &factors - &wanted).amax() > MET * wanted.amax() {
+            return None;
+        }
+        for ((sector, polynomial), factor) in candidates.iter().zip(&factors) {
+            sources[*sector].extend(polynomial.iter().map(|(exponents, c)| (*exponents, factor * c)));
+        }
+        data.iter_mut().for_each(|data| *data = empty(wedge));
+        Some(())
+    }
+
     /// The polynomial of a degree in `t / radius` that has the values of a function along a ray, up to what is as far as the radius from
     /// the vertex; and how far it is off.
     fn along_ray(
@@ -795,6 +844,35 @@ fn numbers(data: &RayData) -> impl Iterator<Item = f64> + '_ {
 fn round(data: &mut RayData, least: f64) {
     let all = data.values.iter_mut().chain(&mut data.fluxes).chain(&mut data.ends);
     all.filter(|x| x.abs() <= least).for_each(|x| *x = 0.0);
+}
+
+/// All data at some places along the rays.
+fn on_rays(data: &[RayData]) -> Vec<f64> {
+    let powers: Vec<Vec<f64>> = data.iter().map(|data| numbers(data).collect()).collect();
+    let count = powers.first().map_or(0, Vec::len);
+    let at = |number: usize, t: f64| powers.iter().rev().fold(0.0, |sum, power| sum * t + power[number]);
+    let places = (1..=data.len()).map(|k| k as f64 / data.len() as f64);
+    places.flat_map(|t| (0..count).map(move |number| (number, t))).map(|(number, t)| at(number, t)).collect()
+}
+
+/// `Re (x + i y)^k` and `Im (x + i y)^k` up to a degree.
+fn harmonic_polynomials(degree: usize) -> Vec<Vec<Monomial>> {
+    let mut all: Vec<Vec<Monomial>> = Vec::with_capacity(2 * degree + 1);
+    let mut binomials = vec![1.0];
+    for k in 0..=degree {
+        for odd in [0, 1] {
+            let part = binomials.iter().enumerate().skip(odd).step_by(2).map(|(j, binomial)| {
+                let sign = if j / 2 % 2 == 0 { 1.0 } else { -1.0 };
+                ([(k - j) as u8, j as u8], sign * binomial)
+            });
+            all.push(part.collect());
+        }
+        binomials = (0..=k + 1)
+            .map(|j| binomials.get(j).unwrap_or(&0.0) + if j > 0 { binomials[j - 1] } else { 0.0 })
+            .collect();
+    }
+    all.retain(|polynomial| !polynomial.is_empty());
+    all
 }
 
 /// `factor |x|^2`.

@@ -122,8 +122,7 @@ pub(crate) fn broken_power<const D: usize>(
         // What u does along the edge is a source across it that is not known.
         return exponent.filter(|power| *power < order as f64);
     }
-    let scales = Scales::plain(data, local);
-    let solution = local.solve(data, &scales, order).ok();
+    let solution = local.solve(data, &mut Scales::plain(data, local), order).ok();
     let power = match &solution {
         Some(solution) => local.broken_by(solution),
         None => exponent,

@@ -123,11 +123,10 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     /// The balance over the cell of node i.
     pub(super) fn row(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<CellRow, MethodError> {
         let cell = self.cell(i, scratch)?;
-        let source = self.problem.source.map_or(0.0, |f| f[i]);
         let mut row = CellRow {
             entries: Vec::with_capacity(cell.faces.len()),
             row_sum: 0.0,
-            rhs: cell.volume * source,
+            rhs: self.source(i, &cell),
             volume: cell.volume,
         };
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));

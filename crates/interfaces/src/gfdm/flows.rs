@@ -7,6 +7,7 @@ use meshless_cells::FaceKind;
 use meshless_geometry::FaceId;
 
 use super::conservative::{BalanceScratch, CellBalance, CellRow, NEGLIGIBLE_FACE};
+use super::source::CellPart;
 use crate::problem::Condition;
 use crate::{MethodError, Problem, SystemSolution, parallel};
 
@@ -36,15 +37,15 @@ pub struct CellSeam {
     pub area: f64,
 }
 
-/// The fluxes of a solution, and the volumes of the cells that they are of.
+/// The fluxes of a solution, and what the cells hold that they are of.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CellFlows<const D: usize> {
     /// Through the boundary.
     pub walls: Vec<CellWall<D>>,
     /// Between regions, each pair of cells from either side.
     pub seams: Vec<CellSeam>,
-    /// Of the cell of every node.
-    pub volumes: Vec<f64>,
+    /// What the cells hold, and what arises in them, by node and region; and the rates of change there.
+    pub parts: Vec<(CellPart, f64)>,
 }
 
 /// Those of all cells.
@@ -63,7 +64,7 @@ pub(super) fn cell_flows<const D: usize>(
     for mut cell in cells {
         all.walls.append(&mut cell.walls);
         all.seams.append(&mut cell.seams);
-        all.volumes.append(&mut cell.volumes);
+        all.parts.append(&mut cell.parts);
     }
     Ok(all)
 }
@@ -79,9 +80,11 @@ impl<const D: usize> CellBalance<'_, D> {
     ) -> Result<CellFlows<D>, MethodError> {
         let (problem, u) = (self.problem, &solution.u);
         let cell = self.cell(i, scratch)?;
-        let mut flows = CellFlows { volumes: vec![cell.volume], ..CellFlows::default() };
         let rate = solution.rates.as_ref().map_or(0.0, |rates| rates[i]);
-        let mut lacks = cell.volume * (rate - problem.source.map_or(0.0, |f| f[i]));
+        let parts: Vec<(CellPart, f64)> =
+            self.parts(i, &cell).into_iter().map(|part| (part, rate)).collect();
+        let mut lacks: f64 = parts.iter().map(|(part, rate)| rate * part.volume - part.source).sum();
+        let mut flows = CellFlows { parts, ..CellFlows::default() };
         // Pieces of the boundary through which the reaction enters.
         let mut held: Vec<usize> = Vec::new();
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));

@@ -9,6 +9,7 @@ mod diffusivity;
 mod flows;
 mod params;
 mod select;
+mod source;
 mod strong;
 
 use std::time::Instant;
@@ -22,6 +23,7 @@ use crate::{MethodError, Problem, SystemSolution};
 use boundary::BoundaryRow;
 use conservative::{CellBalance, CellRow};
 pub use flows::{CellFlows, CellSeam, CellWall};
+pub use source::CellPart;
 pub use params::{GfdmParams, Selection, StrongParams};
 pub(crate) use strong::add_correction;
 

@@ -332,8 +332,8 @@ impl Vertex {
                 .collect::<Result<Vec<_>, _>>()?;
             let (sources, errors): (Vec<_>, Vec<f64>) = sources.into_iter().unzip();
             let doubt = errors.into_iter().fold(0.0, f64::max);
-            let scales = Scales { scale: scale.clone(), offset: offset.clone(), radius, sources, doubt };
-            let solution = local.solve(&CornerData::from(problem), &scales, params.degree())?;
+            let mut scales = Scales { scale: scale.clone(), offset: offset.clone(), radius, sources, doubt };
+            let solution = local.solve(&CornerData::from(problem), &mut scales, params.degree())?;
             let better = best.as_ref().is_none_or(|(.., known)| solution.doubt < WORTH_LESS * known.doubt);
             if better {
                 best = Some((zone, scales, solution));

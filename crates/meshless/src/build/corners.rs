@@ -14,7 +14,8 @@ const CHANGES: f64 = 5e-3;
 /// The order for which a scene tells the spacings at corners; they fall with the order.
 const ORDER: f64 = 4.0;
 
-/// The least spacing at a corner, over what is clear round it.
+/// The least spacing at a corner, over what is clear round it; and the least that has to be clear, over the spacing given there: surfaces
+/// that touch have corners at a distance of rounding.
 const LEAST_PART: f64 = 1e-6;
 
 /// The vertices of a scene, and in space edges, whose solutions have a power below `order` that is no polynomial; none where regions
@@ -70,7 +71,7 @@ pub(super) fn corner_spacings<const D: usize>(
     for corner in singular_corners(&scene.at_time(0.0), method.order)? {
         let at: [f64; D] = std::array::from_fn(|k| corner.at[k]);
         // What is no spacing is refused where the cloud is made.
-        let Ok(h) = given.at(&at) else { continue };
+        let Some(h) = given.at(&at).ok().filter(|h| corner.clear > LEAST_PART * h) else { continue };
         let size = if method.serves && corner.obstacle == Some(Obstacle::Method) {
             Size { at, spacing: corner.clear / across, within: corner.clear }
         } else {

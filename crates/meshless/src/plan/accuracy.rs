@@ -63,6 +63,9 @@ impl AccuracyPlan {
             let order = self.order_of(SHARP_ORDERS[scene.dimension - 1]);
             return choice(MethodName::Sharp, order, "high order on both sides of interfaces");
         }
+        if survey.needs_balances(scene) {
+            return choice(MethodName::GfdmConservative, None, super::choose::CORNERS_IN_TIME);
+        }
         let high = scene.method.order.is_some_and(|order| order > 2 && Sharp::offers(order, scene.dimension));
         if jumps && (high || scene.output.fluxes) {
             return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");

@@ -11,6 +11,12 @@ use crate::scene::{ConditionSpec, ExprField, RegionSpec, Scene};
 /// Order below which powers of the distance from a corner count, where the scene names none: that of the sharp method by default.
 const LEAST_ORDER: usize = 4;
 
+/// Exponents of corners from here on leave less than a method of second order does elsewhere.
+const SMOOTH: f64 = 1.0;
+
+/// The order of the methods that balance every cell.
+const BALANCE_ORDER: usize = 2;
+
 /// Something that a scene has and that costs something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effect {
@@ -185,6 +191,15 @@ impl Survey {
     /// Whether the sharp method has functions for some of the corners, or edges in space, of a steady scene.
     pub(super) fn has_corner_functions(&self, scene: &Scene) -> bool {
         scene.time.is_none() && (self.has_corners(scene) || self.servable)
+    }
+
+    /// Whether corners at interfaces of a scene in time, of no order in particular, lose heat where fits meet them.
+    pub(super) fn needs_balances(&self, scene: &Scene) -> bool {
+        let singular = |e: &Effect| matches!(e, Effect::Corners { exponent, .. } if *exponent < SMOOTH);
+        scene.time.is_some()
+            && scene.method.order.is_none_or(|order| order <= BALANCE_ORDER)
+            && self.has_interface()
+            && self.has(singular)
     }
 
     /// Whether anything happens at an interface at all.

@@ -255,33 +255,35 @@ impl<const D: usize> Ledger<D> {
         }
         let conducts: Vec<f64> =
             sums.into_iter().map(|(sum, count): (f64, f64)| sum / count.max(1.0)).collect();
-        for seam in &cells.seams {
-            let flow = &mut flows.regions[seam.between[0] as usize];
-            flow.seams -= seam.flux;
-            flow.size += seam.flux.abs();
-            flows.whole.jumps -= seam.flux;
+        let nothing = || vec![Content::default(); self.names.len()];
+        let (mut sources, mut stored) = (nothing(), nothing());
+        let mut leaves = |from: u16, into: u16, flux: f64, area: f64| {
+            let flow = &mut flows.regions[from as usize];
+            flow.seams -= flux;
+            flow.size += flux.abs();
+            flows.whole.jumps -= flux;
             // Both sides are listed; the totals are those of the one that conducts less.
-            let [here, there] = seam.between.map(|k| conducts[k as usize]);
-            let first = seam.between[0] < seam.between[1];
+            let [here, there] = [from, into].map(|k| conducts[k as usize]);
+            let first = from < into;
             if here < there || (here == there && first) {
-                let between = [seam.between[0].min(seam.between[1]), seam.between[0].max(seam.between[1])];
-                self.add_to_interface(
-                    &mut flows,
-                    between,
-                    if first { -seam.flux } else { seam.flux },
-                    seam.area,
-                );
+                let between = [from.min(into), from.max(into)];
+                self.add_to_interface(&mut flows, between, if first { -flux } else { flux }, area);
+            }
+        };
+        for seam in &cells.seams {
+            leaves(seam.between[0], seam.between[1], seam.flux, seam.area);
+        }
+        for (part, rate) in &cells.parts {
+            let (arises, stays) = (part.source, rate * part.volume);
+            sources[part.region as usize].value += arises;
+            stored[part.region as usize].value += stays;
+            // What arises in the part of a cell beyond the interface comes in through that.
+            if part.region != part.cell {
+                leaves(part.region, part.cell, arises - stays, 0.0);
+                leaves(part.cell, part.region, stays - arises, 0.0);
             }
         }
-        let by_region = |values: &[f64]| -> Vec<Content> {
-            let mut sums = vec![Content::default(); self.names.len()];
-            for ((value, volume), &label) in values.iter().zip(&cells.volumes).zip(problem.labels) {
-                sums[label as usize].value += value * volume;
-            }
-            sums
-        };
-        let sources = problem.source.map_or_else(|| vec![Content::default(); self.names.len()], by_region);
-        flows.contents = Some((sources, system.rates.as_deref().map(by_region)));
+        flows.contents = Some((sources, system.rates.is_some().then_some(stored)));
         flows
     }
 
