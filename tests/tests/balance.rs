@@ -152,17 +152,19 @@ fn an_answer_that_is_wrong_says_so() {
     }
 }
 
-/// Balances over all cells close to what the solver leaves, whatever the corners.
+/// Balances over all cells close to what the solver leaves, whatever the corners; against the sources as they are given, to how well cells cut
+/// by interfaces are known. By the sources at the nodes that is 1 to 8 %.
 #[test]
 fn conservative_methods_leave_nothing_over() {
     for (text, _) in natural().into_iter().filter(|(text, _)| !text.contains("1e-10")) {
         let report = solved(&text, MethodName::GfdmConservative).expect("it is solved");
         let found = balance(&report);
         assert!(
-            found.relative < 1e-8 && report.estimate.raised_by.as_deref() != Some("balance"),
+            found.relative < 3e-4 && report.estimate.raised_by.as_deref() != Some("balance"),
             "{report:?}"
         );
-        assert!(found.regions.values().all(|region| region.relative < 1e-8), "{found:?}");
+        assert!(report.matrix.column_sum < 1e-12, "{:?}", report.matrix);
+        assert!(found.regions.values().all(|region| region.relative < 3e-4), "{found:?}");
     }
 }
 

@@ -53,8 +53,9 @@ pub(crate) struct Flows {
     /// Of the whole, and of every region.
     whole: Flow,
     regions: Vec<Flow>,
-    /// Sources and what is stored as cells have them, where the fluxes are those of cells.
-    contents: Option<(Vec<Content>, Option<Vec<Content>>)>,
+    /// What is stored as cells have it, where the fluxes are those of cells; and the sources, where nothing else tells the regions.
+    stored: Option<Vec<Content>>,
+    sources: Option<Vec<Content>>,
 }
 
 /// What enters a region.
@@ -218,7 +219,8 @@ impl<const D: usize> Ledger<D> {
             interfaces: Vec::new(),
             whole: Flow::default(),
             regions: vec![Flow::default(); self.names.len()],
-            contents: None,
+            stored: None,
+            sources: None,
         }
     }
 
@@ -283,7 +285,9 @@ impl<const D: usize> Ledger<D> {
                 leaves(part.cell, part.region, stays - arises, 0.0);
             }
         }
-        flows.contents = Some((sources, system.rates.is_some().then_some(stored)));
+        flows.stored = system.rates.is_some().then_some(stored);
+        // Cells may miss a part of the domain, and so of its sources: then what leaves is not what arises.
+        flows.sources = (problem.regions.len() != problem.materials.len()).then_some(sources);
         flows
     }
 
@@ -316,10 +320,8 @@ impl<const D: usize> Ledger<D> {
 
     /// Sources, and what is stored.
     fn contents<'a>(&'a self, flows: &'a Flows) -> (&'a [Content], Option<&'a [Content]>) {
-        match &flows.contents {
-            Some((sources, stored)) => (sources, stored.as_deref()),
-            None => (&self.sources, self.stored.as_deref()),
-        }
+        let stored = flows.stored.as_ref().or(self.stored.as_ref());
+        (flows.sources.as_ref().unwrap_or(&self.sources), stored.map(Vec::as_slice))
     }
 
     /// The balance in figures.
