@@ -218,6 +218,31 @@ fn corners_that_nothing_serves_are_named_and_raise_the_estimate() {
     assert!(found.corners.iter().all(|edge| !edge.served && (edge.exponent - 0.731_691_8).abs() < 1e-4));
 }
 
+/// An eighth of a cube with a source in a larger one: three edges that end in one vertex, of which there is no closed form. A few nodes more
+/// round it, a quarter of the error.
+#[test]
+fn clouds_that_adapt_are_finer_round_the_vertices_of_a_cube() {
+    let text = |spacing: f64, adapt: bool| {
+        format!(
+            "title = \"Eighth\"\ndimension = 3\n[domain]\nbox = {{ min = [0, 0, 0], max = [1, 1, 1] }}\n\
+             [points]\nspacing = {spacing}\nadapt = {adapt}\n[[regions]]\nname = \"cube\"\n\
+             box = {{ min = [-0.4, -0.4, -0.4], max = [0.4, 0.4, 0.4] }}\ndiffusivity = 10\nsource = 10\n\
+             [[regions]]\nname = \"plate\"\ndiffusivity = 1\n\
+             [[boundaries]]\nface = \"left\"\nneumann = 0\n[[boundaries]]\nface = \"bottom\"\nneumann = 0\n\
+             [[boundaries]]\nface = \"back\"\nneumann = 0\n[[boundaries]]\nface = \"all\"\ndirichlet = 0\n\
+             [[probes]]\nat = [0.1, 0.05, 0.2]\n"
+        )
+    };
+    // By hp-FEM, `tests/references/space.py`.
+    let exact = 0.465_187_8;
+    let [even, adapted] = [false, true].map(|adapt| report(&text(0.12, adapt)));
+    let error = |report: &Report| (report.probes[0].value.expect("inside") / exact - 1.0).abs();
+    assert!(adapted.unknowns < even.unknowns * 13 / 10, "{} {}", adapted.unknowns, even.unknowns);
+    assert!(error(&adapted) < 5e-3 && error(&even) > 8e-3, "{} {}", error(&adapted), error(&even));
+    let estimate = adapted.estimate.l2.expect("an estimate");
+    assert!(estimate > 0.3 * error(&adapted), "{estimate}");
+}
+
 /// What two circles have in common, that meet in the middle at half an angle of `half` from the axis and again at x = 1.5, outside.
 fn lens(half: f64) -> String {
     let (p, radius) = (1.5, 0.75 / half.sin());

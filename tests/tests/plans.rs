@@ -103,6 +103,35 @@ fn jumps_are_effects_and_call_for_fits_on_both_sides() {
     }
 }
 
+/// In time corners have no functions of their own, and fits lose heat there: balances do not.
+#[test]
+fn scenes_in_time_with_corners_take_balances() {
+    let chosen = |text: &str| {
+        let scene = Scene::parse(text, "small.toml").expect("a scene");
+        Plan::new(&scene).expect("a plan").method.name
+    };
+    let time = "[time]\nend = 1\ninitial = \"0\"\n[output]\nfluxes = true\n";
+    let disc = Small { inside: Some("7"), ..Small::default() }.text();
+    let shape = "sphere = { center = [0.5, 0.5], radius = 0.3 }";
+    assert!(disc.contains(shape), "{disc}");
+    let square = disc.replace(shape, "box = { min = [0.3, 0.3], max = [0.7, 0.7] }");
+    assert_eq!(chosen(&square), MethodName::Sharp);
+    assert_eq!(chosen(&(disc + time)), MethodName::Sharp);
+    assert_eq!(chosen(&(square.clone() + time)), MethodName::GfdmConservative);
+    assert_eq!(chosen(&(square + time + "[accuracy]\ntolerance = 1e-2\n")), MethodName::GfdmConservative);
+}
+
+#[test]
+fn clouds_adapt_to_corners_where_the_scene_asks_for_it() {
+    let text = Small { inside: Some("7"), source: Some("1"), ..Small::default() }.text();
+    let plan = |text: &str| Plan::new(&Scene::parse(text, "small.toml").expect("a scene")).expect("a plan");
+    assert!(!plan(&text).adapts);
+    let adapted = plan(&text.replace("[points]\n", "[points]\nadapt = true\n"));
+    assert!(adapted.adapts && adapted.effects.contains(&Effect::GradedCloud));
+    assert!(adapted.to_string().contains("cloud       finer round the corners"), "{adapted}");
+    assert!(adapted.predicted.unknowns >= plan(&text).predicted.unknowns);
+}
+
 #[test]
 fn gaps_are_refined_where_the_scene_asks_for_it() {
     let text = Small { inside: Some("7"), ..Small::default() }.text();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use meshless::plan::{Plan, Stage};
 use meshless::scene::{MethodName, Scene};
-use meshless::{Checkpoint, Error, Progress, Silent, Solution, execute_from};
+use meshless::{Checkpoint, Error, Progress, Silent, Solution, execute, execute_from};
 use meshless_tests::order::{observed, over_clouds};
 use meshless_tests::solve::{solve_scene, solve_with};
 use meshless_tests::unsteady::{Growing, ball, composite, driven, growing, slab};
@@ -18,6 +18,23 @@ fn solved(text: &str) -> Solution {
 }
 
 /// Space is exact here, so all of the error is that of the steps.
+/// A square with a source, in time, to its steady end: by hp-FEM u is 0.6718 in it (`tests/references/natural.csv`), and all of the heat leaves.
+#[test]
+fn a_heated_chip_in_time_keeps_its_heat() {
+    let text = "title = \"Chip\"\ndimension = 2\n[domain]\nbox = { min = [-1, -1], max = [1, 1] }\n[points]\nspacing = 0.1\n\
+        [[regions]]\nname = \"chip\"\nbox = { min = [-0.3, -0.3], max = [0.3, 0.3] }\ndiffusivity = 10\nsource = 10\n\
+        [[regions]]\nname = \"plate\"\ndiffusivity = 1\n[[boundaries]]\nface = \"all\"\ndirichlet = 0\n\
+        [time]\nend = 3\ninitial = \"0\"\ntolerance = 1e-3\n[[probes]]\nat = [0.05, 0.1]\n[output]\nfluxes = true\n";
+    let scene = Scene::parse(text, "chip.toml").expect("a scene");
+    let report =
+        execute(&scene, &Plan::new(&scene).expect("a plan"), &mut Silent).expect("it is solved").report;
+    let fluxes = report.fluxes.expect("asked for");
+    assert!((fluxes.boundaries[0].flux / -3.6 - 1.0).abs() < 2e-3, "{fluxes:?}");
+    assert!((fluxes.interfaces[0].flux / -3.6 - 1.0).abs() < 2e-3, "{fluxes:?}");
+    let error = (report.probes[0].value.expect("inside") / 0.671_822 - 1.0).abs();
+    assert!(error < 3e-2 && report.estimate.l2.is_some_and(|estimate| estimate > 0.3 * error), "{error}");
+}
+
 #[test]
 fn the_error_falls_with_the_square_of_the_number_of_steps() {
     let run = |tolerance| {

@@ -225,11 +225,6 @@ impl Local {
         }
     }
 
-    /// Whether it is an edge with an end near which its functions are not those of the solution.
-    fn has_open_end(&self) -> bool {
-        self.along.is_some_and(|along| along.tips.iter().any(|tip| *tip != Tip::Symmetry))
-    }
-
     /// Length of an edge over the number of its ends that are none of symmetry; as long as can be without.
     pub(crate) fn length_an_end(&self) -> f64 {
         self.along.map_or(f64::INFINITY, |along| {
@@ -266,8 +261,14 @@ impl Local {
             None => self.at.to_vec(),
             Some(_) => self.in_space::<3>(self.at).to_vec(),
         };
-        let clear = self.along.map_or(self.clear, |along| self.clear.min(along.half_length));
-        Corner { at, exponent, clear, obstacle, ends: self.has_open_end() }
+        let clear = self.clear.min(self.length_an_end());
+        let ends = self.along.map_or_else(Vec::new, |along| {
+            let at = |z: f64| self.frame.place::<3>(self.at, z).to_vec();
+            along.tips.into_iter().zip([at(-along.half_length), at(along.half_length)]).collect()
+        });
+        let line = ends.iter().map(|(_, at)| at.clone()).collect();
+        let tips = ends.into_iter().filter(|(tip, _)| *tip != Tip::Symmetry).map(|(_, at)| at).collect();
+        Corner { at, exponent, clear, obstacle, line, tips }
     }
 
     /// The local problems across an edge.
@@ -659,8 +660,10 @@ impl Local {
             self.take_sources(wedge, along, &alone, &mut taken)?;
             columns.push(on_rays(&taken));
         }
-        let size = |row: usize| columns.iter().map(|column| column[row].abs()).fold(left[row].abs(), f64::max);
-        let sizes: Vec<f64> = (0..left.len()).map(size).map(|size| if size > 0.0 { size } else { 1.0 }).collect();
+        let size =
+            |row: usize| columns.iter().map(|column| column[row].abs()).fold(left[row].abs(), f64::max);
+        let sizes: Vec<f64> =
+            (0..left.len()).map(size).map(|size| if size > 0.0 { size } else { 1.0 }).collect();
         let matrix = DMatrix::from_fn(left.len(), columns.len(), |row, k| columns[k][row] / sizes[row]);
         let wanted = DVector::from_fn(left.len(), |row, _| -left[row] / sizes[row]);
         let svd = matrix.clone().svd(true, true);

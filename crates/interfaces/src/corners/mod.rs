@@ -45,8 +45,10 @@ pub struct Corner {
     pub clear: f64,
     /// Why corner functions do not serve it; `None` where they do.
     pub obstacle: Option<Obstacle>,
-    /// An edge in space that ends in a vertex: near that its functions are not those of the solution, and nothing serves it.
-    pub ends: bool,
+    /// Points along an edge in space, straight on from one to the next; none of a vertex in the plane.
+    pub line: Vec<Vec<f64>>,
+    /// Where such an edge ends in a vertex: near that its functions are not those of the solution, and nothing serves it.
+    pub tips: Vec<Vec<f64>>,
 }
 
 /// What corners depend on: a problem before it has a cloud.

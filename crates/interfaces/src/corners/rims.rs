@@ -26,6 +26,9 @@ const WHOLE: f64 = 1e-5;
 /// Rims that are looked at at most.
 const MOST_RIMS: usize = 5_000;
 
+/// Sides of the polygon that stands for a rim.
+const SIDES: usize = 64;
+
 /// A point of an edge: where, two directions across it, the length of the edge.
 type Across = ([f64; 3], [[f64; 3]; 2], f64);
 
@@ -38,7 +41,7 @@ pub(crate) fn rims<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Ve
     shapes.extend(data.domain.curved_faces().into_iter().map(|(_, shape, _)| shape));
     shapes.extend((0..data.regions.len() as u16).filter_map(|label| data.regions.shape(label)));
     let leaves = shapes.into_iter().flat_map(Shape::leaves).map(|(leaf, _)| leaf);
-    let mut all: Vec<Across> = Vec::new();
+    let mut all: Vec<(Across, Vec<Vec<f64>>)> = Vec::new();
     for leaf in leaves {
         if let Shape::Cylinder(cylinder) = leaf {
             of_cylinder(cylinder, &mut all);
@@ -48,18 +51,19 @@ pub(crate) fn rims<const D: usize>(data: &CornerData<'_, D>, order: usize) -> Ve
         return Vec::new();
     }
     let mut found: Vec<Corner> = Vec::new();
-    for across in &all {
-        let Some(exponent) = exponent(data, across, order as f64) else { continue };
+    for (across, line) in all {
+        let Some(exponent) = exponent(data, &across, order as f64) else { continue };
         let at = across.0.to_vec();
         if found.iter().all(|known| known.at != at) {
             let (clear, obstacle) = (0.5 * across.2, Some(Obstacle::Curved));
-            found.push(Corner { at, exponent, clear, obstacle, ends: false });
+            found.push(Corner { at, exponent, clear, obstacle, line, tips: Vec::new() });
         }
     }
     found
 }
 
-fn of_cylinder<const D: usize>(cylinder: &Cylinder<D>, all: &mut Vec<Across>) {
+/// The two rims of a cylinder: a point of each, and all round.
+fn of_cylinder<const D: usize>(cylinder: &Cylinder<D>, all: &mut Vec<(Across, Vec<Vec<f64>>)>) {
     let Some(half) = cylinder.half_length() else { return };
     let [center, axis] =
         [cylinder.center(), cylinder.axis()].map(|x| -> [f64; 3] { std::array::from_fn(|k| x[k]) });
@@ -68,9 +72,16 @@ fn of_cylinder<const D: usize>(cylinder: &Cylinder<D>, all: &mut Vec<Across>) {
     let mut out: [f64; 3] = std::array::from_fn(|k| f64::from(u8::from(k == least)) - axis[least] * axis[k]);
     let length = out.iter().map(|x| x * x).sum::<f64>().sqrt();
     out.iter_mut().for_each(|x| *x /= length);
+    let [[ax, ay, az], [ox, oy, oz]] = [axis, out];
+    let aside = [ay * oz - az * oy, az * ox - ax * oz, ax * oy - ay * ox];
     for sign in [-1.0, 1.0] {
-        let at = std::array::from_fn(|k| center[k] + sign * half * axis[k] + cylinder.radius() * out[k]);
-        all.push((at, [out, axis], cylinder.radius().min(half)));
+        let place = |angle: f64| -> [f64; 3] {
+            let (sin, cos) = angle.sin_cos();
+            let across = |k: usize| cylinder.radius() * (cos * out[k] + sin * aside[k]);
+            std::array::from_fn(|k| center[k] + sign * half * axis[k] + across(k))
+        };
+        let line = (0..=SIDES).map(|k| place(TAU * k as f64 / SIDES as f64).to_vec()).collect();
+        all.push(((place(0.0), [out, axis], cylinder.radius().min(half)), line));
     }
 }
 

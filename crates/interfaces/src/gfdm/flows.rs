@@ -81,8 +81,7 @@ impl<const D: usize> CellBalance<'_, D> {
         let (problem, u) = (self.problem, &solution.u);
         let cell = self.cell(i, scratch)?;
         let rate = solution.rates.as_ref().map_or(0.0, |rates| rates[i]);
-        let parts: Vec<(CellPart, f64)> =
-            self.parts(i, &cell).into_iter().map(|part| (part, rate)).collect();
+        let parts: Vec<(CellPart, f64)> = self.parts(i, &cell).into_iter().map(|part| (part, rate)).collect();
         let mut lacks: f64 = parts.iter().map(|(part, rate)| rate * part.volume - part.source).sum();
         let mut flows = CellFlows { parts, ..CellFlows::default() };
         // Pieces of the boundary through which the reaction enters.

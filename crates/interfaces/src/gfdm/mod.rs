@@ -23,8 +23,8 @@ use crate::{MethodError, Problem, SystemSolution};
 use boundary::BoundaryRow;
 use conservative::{CellBalance, CellRow};
 pub use flows::{CellFlows, CellSeam, CellWall};
-pub use source::CellPart;
 pub use params::{GfdmParams, Selection, StrongParams};
+pub use source::CellPart;
 pub(crate) use strong::add_correction;
 
 /// A generalised finite difference method.

@@ -1,4 +1,4 @@
-//! What arises in the cell of a node: a cell that an interface cuts has the sources of both sides.
+//! What arises in the cell of a node: a cell that an interface cuts has the sources of both sides, each as it is at the node.
 
 use meshless_cells::Cell;
 
@@ -83,30 +83,27 @@ impl<const D: usize> CellBalance<'_, D> {
         if !is_cut {
             return vec![whole];
         }
+        let x = &problem.cloud.points()[i];
         let mut found: Vec<CellPart> = Vec::new();
         let mut length = 0.0;
         for line in self.lines(i, cell) {
             length += line.to - line.from;
-            self.along(&line, &mut |region, from, to| {
-                let source = self.source_of(region, &line.at(0.5 * (from + to))) * (to - from);
-                match found.iter_mut().find(|part| part.region == region) {
-                    Some(part) => {
-                        part.source += source;
-                        part.volume += to - from;
-                    }
-                    None => found.push(CellPart { region, cell: own, source, volume: to - from }),
-                }
+            self.along(&line, &mut |region, from, to| match found
+                .iter_mut()
+                .find(|part| part.region == region)
+            {
+                Some(part) => part.volume += to - from,
+                None => found.push(CellPart { region, cell: own, source: 0.0, volume: to - from }),
             });
-        }
-        if found.is_empty() || !found.iter().all(|part| part.source.is_finite()) {
-            return vec![whole];
         }
         let weight = cell.volume / length;
         for part in &mut found {
-            part.source *= weight;
             part.volume *= weight;
+            // All of a part has the source that is at the node, as it has the rate of change there.
+            part.source = self.source_of(part.region, x) * part.volume;
         }
-        found
+        let is_known = !found.is_empty() && found.iter().all(|part| part.source.is_finite());
+        if is_known { found } else { vec![whole] }
     }
 
     /// Lines through the cell of node i towards what is beyond the interface, which they cross at a large angle, at even distances.

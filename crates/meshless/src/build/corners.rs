@@ -48,6 +48,9 @@ fn in_dimension<const D: usize>(scene: &Scene, order: usize) -> Result<Vec<Corne
     Ok(corners(&data, order))
 }
 
+/// Places along a straight part of an edge in space at which a spacing is asked for, at most.
+const MOST_ALONG: f64 = 1e4;
+
 /// What a method makes of corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct AtCorners {
@@ -57,30 +60,64 @@ pub(crate) struct AtCorners {
     pub(crate) serves: bool,
 }
 
-/// The spacings that the corners of a scene in the plane ask for, where its cloud adapts to them. One that has functions of its own needs
-/// nodes within what is clear round it, the more the higher the order; to others the spacing falls to where the singular part of the
-/// solution is as small as the error elsewhere: `(s / L)^(2 lambda) = (h / L)^order`.
+/// The spacings that the corners of a scene ask for, where its cloud adapts to them. One in the plane that has functions of its own needs
+/// nodes within what is clear round it, the more the higher the order. To others, and to the vertices in which edges in space end, the spacing
+/// falls to where the singular part of the solution leaves as little as the order does elsewhere, `(s / L)^rate = (h / L)^order`.
 pub(super) fn corner_spacings<const D: usize>(
     scene: &Scene,
     method: AtCorners,
 ) -> Result<Vec<Size<D>>, Error> {
-    let Some(spec) = scene.points.corners.filter(|_| D == 2) else { return Ok(Vec::new()) };
+    let Some(spec) = scene.points.corners.filter(|_| D > 1) else { return Ok(Vec::new()) };
     let (given, order) = (spacing::<D>(scene), method.order as f64);
     let across = spec.across * (order / ORDER).max(1.0);
     let mut places = Vec::new();
     for corner in singular_corners(&scene.at_time(0.0), method.order)? {
-        let at: [f64; D] = std::array::from_fn(|k| corner.at[k]);
-        // What is no spacing is refused where the cloud is made.
-        let Some(h) = given.at(&at).ok().filter(|h| corner.clear > LEAST_PART * h) else { continue };
-        let size = if method.serves && corner.obstacle == Some(Obstacle::Method) {
-            Size { at, spacing: corner.clear / across, within: corner.clear }
-        } else {
-            let power = order / (2.0 * corner.exponent).max(1.0);
-            Size::at(at, corner.clear * (h / corner.clear).min(1.0 / across).powf(power).max(LEAST_PART))
+        let (clear, rate) = (corner.clear, 2.0 * corner.exponent);
+        let is_served = method.serves && corner.obstacle == Some(Obstacle::Method);
+        let mut ask = |at: [f64; D], size: &dyn Fn(f64) -> Size<D>| {
+            // What is no spacing is refused where the cloud is made.
+            let h = given.at(&at).ok().filter(|h| clear > LEAST_PART * h)?;
+            let size = size(h);
+            (size.spacing < h).then(|| places.push(size))
         };
-        if size.spacing < h {
-            places.push(size);
+        let falling = |at: [f64; D], h: f64, most: f64, rate: f64| {
+            let power = order / rate.max(1.0);
+            Size::at(at, clear * (h / clear).min(most).powf(power).max(LEAST_PART))
+        };
+        match D {
+            2 if is_served => {
+                let at = point(&corner.at);
+                ask(at, &|_| Size { at, spacing: clear / across, within: clear });
+            }
+            2 => {
+                let at = point(&corner.at);
+                ask(at, &|h| falling(at, h, across.recip(), rate));
+            }
+            _ if is_served => {
+                for at in corner.tips.iter().map(|tip| point(tip)) {
+                    ask(at, &|h| falling(at, h, 1.0, rate + 1.0));
+                }
+            }
+            _ => {
+                for ends in corner.line.windows(2) {
+                    let [from, to]: [[f64; D]; 2] = [point(&ends[0]), point(&ends[1])];
+                    let middle: [f64; D] = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
+                    let Ok(h) = given.at(&middle) else { continue };
+                    let step = falling(middle, h, 1.0, rate).spacing;
+                    let length = (0..D).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
+                    let count = (length / step).ceil().clamp(1.0, MOST_ALONG);
+                    for number in 0..=count as u32 {
+                        let t = f64::from(number) / count;
+                        let at = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
+                        ask(at, &|h| falling(at, h, 1.0, rate));
+                    }
+                }
+            }
         }
     }
     Ok(places)
+}
+
+fn point<const D: usize>(x: &[f64]) -> [f64; D] {
+    std::array::from_fn(|k| x[k])
 }

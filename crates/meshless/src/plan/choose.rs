@@ -93,8 +93,7 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
 }
 
 /// Why a scene in time takes balances.
-pub(super) const CORNERS_IN_TIME: &str =
-    "corners at interfaces lose heat where fits meet them, and have functions of their own in steady scenes only: balances everywhere";
+pub(super) const CORNERS_IN_TIME: &str = "corners at interfaces lose heat where fits meet them, and have functions of their own in steady scenes only: balances everywhere";
 
 /// What a scene takes where something jumps at an interface and no tolerance is given: fits of high order, unless the
 /// interfaces are known roughly only, or u changes with time. In time corners have no functions of their own, and fits lose heat there.

@@ -153,9 +153,9 @@ fn gaps(table: &Table<'_>, layout: LayoutName, open: bool) -> Result<Option<GapS
     Ok(Some(GapSpec { least: value.positive()?, across: thin_layers::RESOLVED }))
 }
 
-/// Whether the cloud of a scene adapts to corners where it says nothing of that: steady ones in the plane, that ask for a tolerance.
+/// Whether the cloud of a scene adapts to corners where it says nothing of that: steady ones that ask for a tolerance.
 fn adapts(root: &Table<'_>, refined: bool) -> bool {
-    refined && root.dimension == 2 && !root.has("time") && !is_open(root)
+    refined && root.dimension > 1 && !root.has("time") && !is_open(root)
 }
 
 /// Whether the cloud adapts to corners.
@@ -177,9 +177,9 @@ fn adapted(
         let help = "take the layout \"irregular\", or leave the key out";
         return Err(value.error("only irregular clouds can adapt", help));
     }
-    if root.dimension != 2 || is_open(root) {
+    if is_open(root) {
         let help = "grade the cloud by an expression as `spacing`, or leave the key out";
-        return Err(value.error("clouds adapt in the plane only, within a domain", help));
+        return Err(value.error("clouds adapt within a domain only", help));
     }
     Ok(adapted)
 }

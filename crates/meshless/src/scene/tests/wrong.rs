@@ -102,6 +102,8 @@ fn points_and_holes() {
                 "positive",
                 "",
             ),
+            wrong("\"irregular\"", "\"grid\"\nadapt = «true»", "points.adapt", "only irregular clouds", ""),
+            wrong("\"irregular\"", "\"irregular\"\nadapt = «1»", "points.adapt", "true or false", ""),
             wrong("[points]", "«[[points]]»", "points", "expected a table, found an array", ""),
             wrong("name = \"bolt\"", "name = «\"left\"»", "holes[0].name", "is the name of a face", ""),
             wrong("name = \"bolt\"", "name = «\"all\"»", "holes[0].name", "is the name of a face", ""),
