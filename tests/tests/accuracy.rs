@@ -215,3 +215,86 @@ fn a_region_in_which_u_is_small_has_an_estimate_of_its_own() {
     let estimate = alone.expect("a solution").report.estimate;
     assert!(estimate.regions.len() == 2 && estimate.regions.values().all(|e| e.is_finite()));
 }
+
+/// A quarter cell of a square array of cylinders, fraction 0.7, contrast 1e10: the effective conductivity is 7.432709328738
+/// (`../references/natural.csv`), of which half a cell with half the difference of potential has half.
+fn quarter_cell(accuracy: &str) -> Scene {
+    let text = format!(
+        "title = \"Quarter cell\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [0.5, 0.5] }}\n[points]\n\
+         [[regions]]\nname = \"fibre\"\nsphere = {{ center = [0, 0], radius = 0.472034871941 }}\ndiffusivity = 1e10\n\
+         [[regions]]\nname = \"matrix\"\ndiffusivity = 1\n[[boundaries]]\nface = \"left\"\ndirichlet = 0\n\
+         [[boundaries]]\nface = \"right\"\ndirichlet = 0.5\n[[boundaries]]\nface = \"all\"\nneumann = 0\n\
+         [accuracy]\n{accuracy}\n"
+    );
+    Scene::parse(&text, "cell.toml").expect("a scene")
+}
+
+#[test]
+fn tolerances_may_be_about_fluxes() {
+    for tolerance in [1e-2, 1e-5] {
+        let scene = quarter_cell(&format!("tolerance = {tolerance:e}\nof = \"fluxes\""));
+        let report = solve(&scene).expect("within reach").report;
+        let fluxes = report.fluxes.expect("a tolerance is about them");
+        for (flux, exact) in fluxes.boundaries.iter().zip([-3.716_354_664, 3.716_354_664, 0.0]) {
+            let estimate = flux.estimate.expect("an estimate");
+            let error = (flux.flux - exact).abs();
+            assert!(error <= tolerance * 3.72, "{tolerance:e}: {error:e}, {fluxes:?}");
+            assert!(error <= 10.0 * estimate + 1e-7, "{error:e}, {fluxes:?}");
+        }
+        let accuracy = report.accuracy.expect("a tolerance");
+        assert!(
+            accuracy.of == "fluxes"
+                && accuracy.rungs.last().is_some_and(|r| r.estimate <= Some(0.5 * tolerance))
+        );
+    }
+}
+
+/// ISO 10211, case 1, where two prescribed values meet: by its series u is 9.6581607 at the first point of the table.
+#[test]
+fn tolerances_may_be_about_probes() {
+    let text = |of: &str| {
+        format!(
+            "title = \"Column\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [4, 8] }}\n[points]\n\
+             [[regions]]\nname = \"all\"\ndiffusivity = 1\n[[boundaries]]\nface = \"top\"\ndirichlet = 20\n\
+             [[boundaries]]\nface = \"right\"\nneumann = 0\n[[boundaries]]\nface = \"all\"\ndirichlet = 0\n\
+             {of}[accuracy]\ntolerance = 1e-4\nof = \"probes\"\n"
+        )
+    };
+    let scene = Scene::parse(&text("[[probes]]\nat = [1, 7]\n"), "column.toml").expect("a scene");
+    let report = solve(&scene).expect("within reach").report;
+    let probe = &report.probes[0];
+    let error = (probe.value.expect("inside") - column(1.0, 7.0)).abs();
+    assert!(error <= 2e-3 && probe.estimate.is_some_and(|e| error <= 3.0 * e), "{error:e} {probe:?}");
+    let error = Scene::parse(&text(""), "column.toml").expect_err("no probes").to_string();
+    assert!(error.contains("accuracy.of") && error.contains("[[probes]]"), "{error}");
+}
+
+/// u in a column of width 8 and height 8, 20 at the top and 0 on the other sides: the series in the sines across.
+fn column(x: f64, y: f64) -> f64 {
+    let pi = std::f64::consts::PI;
+    let term = |k: u32| {
+        let wave = f64::from(2 * k + 1) * pi / 8.0;
+        // sinh(a y) / sinh(8 a) without large numbers.
+        let height = ((wave * (y - 8.0)).exp() - (-wave * (y + 8.0)).exp()) / (1.0 - (-16.0 * wave).exp());
+        80.0 / (f64::from(2 * k + 1) * pi) * (wave * x).sin() * height
+    };
+    (0..400).map(term).sum()
+}
+
+#[test]
+fn an_estimate_can_be_left_out() {
+    let text = kraus::interior(10.0, kraus::SUPPORT * 0.15, 1) + "[output]\nestimate = false\n";
+    let scene = Scene::parse(&text, "scene.toml").expect("a scene");
+    let plan = Plan::new(&scene).expect("a plan");
+    assert!(!plan.runs(Stage::Estimate) && plan.predicted.estimate_seconds == 0.0);
+    assert!(plan.skipped.iter().any(|skipped| skipped.what == "error estimate"), "{plan}");
+    let report = execute(&scene, &plan, &mut Silent).expect("it is solved").report;
+    assert!(
+        report.estimate.l2.is_none()
+            && report.estimate.why_not.is_some()
+            && report.extrema.estimate.is_none()
+    );
+    let error =
+        Scene::parse(&(text + "[accuracy]\ntolerance = 1e-3\n"), "scene.toml").expect_err("a contradiction");
+    assert!(error.to_string().contains("output.estimate"), "{error}");
+}

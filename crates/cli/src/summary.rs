@@ -63,10 +63,22 @@ fn corners(corners: &[CornerReport]) {
 /// What enters through the parts of the boundary, and passes interfaces.
 fn fluxes(fluxes: &FluxReport) {
     for part in &fluxes.boundaries {
-        say!("flux        {:.6e} enters through {} (boundaries[{}])", part.flux, part.face, part.entry);
+        let within = within(part.estimate);
+        say!(
+            "flux        {:.6e}{within} enters through {} (boundaries[{}])",
+            part.flux,
+            part.face,
+            part.entry
+        );
     }
     for seam in &fluxes.interfaces {
-        say!("flux        {:.6e} enters \"{}\" from \"{}\"", seam.flux, seam.between[0], seam.between[1]);
+        let within = within(seam.estimate);
+        say!(
+            "flux        {:.6e}{within} enters \"{}\" from \"{}\"",
+            seam.flux,
+            seam.between[0],
+            seam.between[1]
+        );
     }
 }
 
@@ -203,6 +215,11 @@ fn seconds(report: &Report) {
     );
 }
 
+/// An estimated error behind its value.
+fn within(estimate: Option<f64>) -> String {
+    estimate.map_or(String::new(), |error| format!(" \u{b1} {error:.1e}"))
+}
+
 fn probe(probe: &Probe, has_u: bool) {
     let Some(value) = probe.value else {
         say!("probe       {:?}: outside of the domain", probe.at);
@@ -210,7 +227,7 @@ fn probe(probe: &Probe, has_u: bool) {
     };
     let mut parts = Vec::new();
     if has_u {
-        parts.push(format!("{value:.8e}"));
+        parts.push(format!("{value:.8e}{}", within(probe.estimate)));
     }
     if let Some(velocity) = &probe.velocity {
         let components: Vec<String> = velocity.iter().map(|v| format!("{v:.8e}")).collect();

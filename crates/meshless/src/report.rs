@@ -145,6 +145,9 @@ pub struct BoundaryFlux {
     pub flux: f64,
     /// Length or area of the part; the number of points on the line.
     pub area: f64,
+    /// Estimated absolute error of the flux, where the scene asks for fluxes and there is an estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
 }
 
 /// What passes an interface.
@@ -156,6 +159,9 @@ pub struct InterfaceFlux {
     pub flux: f64,
     /// Length or area.
     pub area: f64,
+    /// Estimated absolute error of the flux, where there is an estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
 }
 
 /// A layer, gap or inclusion that is thinner than fits want it: the solution is less accurate there.
@@ -264,8 +270,10 @@ pub struct Estimate {
 /// The clouds that were tried for a tolerance; the report is about the last one, and its `seconds.total` about all.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct AccuracyReport {
-    /// Relative L2 error to reach; twice the estimate of the last cloud is below it.
+    /// Relative error to reach; twice the estimate of the last cloud is below it.
     pub tolerance: f64,
+    /// What it is about: `u`, `fluxes` or `probes`.
+    pub of: String,
     /// The clouds, in the order in which they were tried.
     pub rungs: Vec<Rung>,
 }
@@ -277,7 +285,7 @@ pub struct Rung {
     pub spacing: f64,
     /// Nodes whose value was solved for; 0 where the cloud was too coarse to be solved on.
     pub unknowns: usize,
-    /// Estimated relative L2 error.
+    /// Estimated relative error of what the tolerance is about.
     pub estimate: Option<f64>,
     /// What raised it, where something did.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -290,12 +298,15 @@ pub struct Rung {
 }
 
 /// Smallest and largest nodal value.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Extrema {
     /// Smallest.
     pub min: f64,
     /// Largest.
     pub max: f64,
+    /// Estimated absolute error of both, where there is an estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
 }
 
 /// How the linear system was solved.
@@ -379,6 +390,9 @@ pub struct Probe {
     pub at: Vec<f64>,
     /// The value; absent where the point lies outside of the domain.
     pub value: Option<f64>,
+    /// Estimated absolute error, where there is an estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
     /// The velocity, where the scene has a vorticity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity: Option<Vec<f64>>,

@@ -162,6 +162,8 @@ pub(crate) struct Verdict {
     pub(crate) left_over: Option<f64>,
     /// The estimate of the answer.
     pub(crate) estimate: f64,
+    /// The largest difference of a probe, over what both answers tell of it.
+    pub(crate) probe: f64,
 }
 
 /// How many times the estimates a difference may be: they are good to a factor of three either way, and a coarse cloud is
@@ -176,8 +178,10 @@ impl Verdict {
     pub(crate) fn excess(&self) -> f64 {
         let difference = self.difference / (FACTOR * self.told + ROUND_OFF);
         let balance = self.left_over.map_or(0.0, |left| left / (FACTOR * self.estimate + ROUND_OFF));
+        let probe = self.probe / FACTOR;
         // Not a number is as wrong as can be.
-        if difference.is_nan() || balance.is_nan() { f64::INFINITY } else { difference.max(balance) }
+        let all = [difference, balance, probe];
+        if all.iter().any(|x| x.is_nan()) { f64::INFINITY } else { all.into_iter().fold(0.0, f64::max) }
     }
 }
 
@@ -198,18 +202,22 @@ pub(crate) fn judge(problem: &Natural) -> Option<Verdict> {
     let answer = solved(&problem.text(1.0), MethodName::Auto).ok()?.report;
     let estimate = answer.estimate.l2?;
     let finer = solved(&problem.text(0.5), MethodName::GfdmConservative).ok()?;
-    let (mut sum, mut count) = (0.0, 0.0);
+    let u = &finer.field.u;
+    let scale = (u.iter().map(|u| u * u).sum::<f64>() / u.len() as f64).sqrt();
+    let (mut sum, mut count, mut probe) = (0.0, 0.0, 0.0_f64);
     for (a, b) in answer.probes.iter().zip(&finer.report.probes) {
+        let told = a.estimate? + b.estimate?;
         let (a, b) = a.value.zip(b.value)?;
         sum += (a - b).powi(2);
         count += 1.0;
+        let ratio = (a - b).abs() / (told + ROUND_OFF * scale);
+        probe = if ratio.is_nan() { ratio } else { probe.max(ratio) };
     }
-    let u = &finer.field.u;
-    let scale = (u.iter().map(|u| u * u).sum::<f64>() / u.len() as f64).sqrt();
     Some(Verdict {
         difference: (sum / count).sqrt() / scale.max(f64::MIN_POSITIVE),
         told: estimate + finer.report.estimate.l2?,
         left_over: left_over(&answer),
         estimate,
+        probe,
     })
 }

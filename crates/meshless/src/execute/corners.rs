@@ -17,7 +17,7 @@ const DIGITS: i32 = 12;
 
 /// Part of what a corner leaves by its rate that is error, by dimension: the median of estimates over true errors of random problems in
 /// the plane is three; in space edges spoil more (a cube on a coarse cloud).
-const SHARE: [f64; 3] = [0.07, 0.07, 0.3];
+const SHARE: [f64; 3] = [0.07, 0.07, 0.5];
 
 /// Distance of two vertices, over that of the next one, up to which they are one: rounding.
 const SAME_PLACE: f64 = 1e-6;

@@ -69,25 +69,42 @@ impl ContactReport {
     }
 }
 
+/// The solution that an estimate is made from.
+#[expect(clippy::large_enum_variant, reason = "there is one of a run")]
+pub(crate) enum Other<const D: usize> {
+    /// There is none.
+    None,
+    /// By a method of a higher degree on the same cloud, less a constant where nothing fixes that.
+    Finer { method: MethodParams, system: SystemSolution, shift: f64 },
+    /// On a coarser cloud: what it differs by, less a constant, is so many times the error.
+    Coarser {
+        /// The scene, at the end where it has time.
+        scene: Scene,
+        plan: Plan,
+        solved: Box<Solved<D>>,
+        shift: f64,
+        times: f64,
+    },
+}
+
 /// An estimate with what it was made from.
-pub(crate) struct Estimated {
+pub(crate) struct Estimated<const D: usize> {
     pub(crate) estimate: Estimate,
     /// Where the method is compared with itself on the same cloud: `u` minus the finer solution at every node.
     pub(crate) differences: Option<Vec<f64>>,
-    /// That finer method, and its solution.
-    pub(crate) finer: Option<(MethodParams, SystemSolution)>,
+    pub(crate) other: Other<D>,
 }
 
-impl Estimated {
+impl<const D: usize> Estimated<D> {
     /// None, for a reason.
     pub(crate) fn none(why_not: String) -> Self {
         Estimate { why_not: Some(why_not), ..Estimate::default() }.into()
     }
 }
 
-impl From<Estimate> for Estimated {
+impl<const D: usize> From<Estimate> for Estimated<D> {
     fn from(estimate: Estimate) -> Self {
-        Self { estimate, differences: None, finer: None }
+        Self { estimate, differences: None, other: Other::None }
     }
 }
 
@@ -98,7 +115,7 @@ pub(crate) fn estimate<const D: usize>(
     plan: &Plan,
     solved: &Solved<D>,
     unresolved: &Unresolved<'_>,
-) -> Result<Estimated, Error> {
+) -> Result<Estimated<D>, Error> {
     if let Some(why_not) = unresolved.why_not() {
         return Ok(Estimated::none(why_not));
     }
@@ -106,14 +123,14 @@ pub(crate) fn estimate<const D: usize>(
         Some(finer) => {
             let mut estimated = against_finer(scene, plan, finer, solved)?;
             if estimated.estimate.l2.is_some() && solved.discrete.cloud.len() <= FEW {
-                let coarser = against_coarser(scene, plan, solved)?;
+                let coarser = against_coarser(scene, plan, solved)?.estimate;
                 if coarser.l2.is_some_and(|l2| l2 > RESOLVED) {
                     take_larger(&mut estimated.estimate, &coarser);
                 }
             }
             estimated
         }
-        None => against_coarser(scene, plan, solved)?.into(),
+        None => against_coarser(scene, plan, solved)?,
     };
     if estimated.estimate.l2.is_some_and(|l2| !l2.is_finite()) {
         let why_not = "the squares of u are beyond double precision: take other units".to_owned();
@@ -166,7 +183,7 @@ fn against_finer<const D: usize>(
     plan: &Plan,
     finer: MethodParams,
     solved: &Solved<D>,
-) -> Result<Estimated, Error> {
+) -> Result<Estimated<D>, Error> {
     let problem = solved.discrete.problem();
     let params = SystemParams { solver: plan.solver, split_floating: plan.runs(Stage::FloatingConstants) };
     let method = finer.build::<D>();
@@ -180,10 +197,11 @@ fn against_finer<const D: usize>(
     };
     let measures = solved.discrete.measures();
     let mut differences: Vec<f64> = solved.system.u.iter().zip(&better.u).map(|(u, b)| u - b).collect();
+    let mut shift = 0.0;
     if solved.system.up_to_constant {
         // Where nothing fixes the constant of u, only what differs beside a constant is an error.
         let total: f64 = differences.iter().zip(&measures).map(|(d, m)| d * m).sum();
-        let shift = total / measures.iter().sum::<f64>();
+        shift = total / measures.iter().sum::<f64>();
         differences.iter_mut().for_each(|d| *d -= shift);
     }
     let mut norms = Norms::of(scene);
@@ -196,7 +214,7 @@ fn against_finer<const D: usize>(
     let constants = of_constants(scene, solved, &differences, &measures);
     take_larger(&mut estimate, &Estimate { regions: constants, ..Estimate::default() });
     let differences = Some(differences);
-    Ok(Estimated { estimate, differences, finer: Some((finer, better)) })
+    Ok(Estimated { estimate, differences, other: Other::Finer { method: finer, system: better, shift } })
 }
 
 /// Relative errors of regions in which u is constant: two solutions may agree by chance in one number, but that is known from the
@@ -237,9 +255,14 @@ fn of_constants<const D: usize>(
     constant.map(|(region, s)| (region.name.clone(), error / (s.squares / s.measure).sqrt())).collect()
 }
 
-fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>) -> Result<Estimate, Error> {
+fn against_coarser<const D: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    fine: &Solved<D>,
+) -> Result<Estimated<D>, Error> {
     let coarse_scene = build::with_spacing_times(scene, RATIO);
-    let coarse = match solve_in::<D>(&coarse_scene, &plan.companion(), None, &mut Silent) {
+    let companion = plan.companion();
+    let coarse = match solve_in::<D>(&coarse_scene, &companion, None, &mut Silent) {
         Ok(coarse) => coarse,
         // A region or a gap that the coarser cloud does not resolve is no fault of the scene.
         Err(error) => {
@@ -247,7 +270,7 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
             let said = error.to_string();
             let first = said.lines().next().unwrap_or_default();
             let why_not = Some(format!("no solution at twice the spacing: {first}"));
-            return Ok(Estimate { why_not, ..Estimate::default() });
+            return Ok(Estimate { why_not, ..Estimate::default() }.into());
         }
     };
     let problem = fine.discrete.problem();
@@ -283,5 +306,15 @@ fn against_coarser<const D: usize>(scene: &Scene, plan: &Plan, fine: &Solved<D>)
         // Relative to the extrapolated solution: the size of one that is far off says nothing of its error.
         norms.add(region, measure, difference - shift, value - (difference - shift) / times);
     });
-    Ok(norms.estimate(scene, times))
+    let scene_at_end = coarse_scene.time.as_ref().map(|time| coarse_scene.at_time(time.end));
+    let estimate = norms.estimate(scene, times);
+    let other = Other::Coarser {
+        scene: scene_at_end.unwrap_or(coarse_scene),
+        plan: companion,
+        solved: Box::new(coarse),
+        // Differences here are the other way round.
+        shift: -shift,
+        times,
+    };
+    Ok(Estimated { estimate, differences: None, other })
 }

@@ -85,7 +85,7 @@ pub(super) fn probes<const D: usize>(
     let tolerance = 1e-9 * problem.domain.bounds().diameter();
     let value = |(at, sample): (&[f64; D], Option<Sample<D>>)| {
         let inside = problem.domain.contains(at, tolerance);
-        Probe { at: at.to_vec(), value: sample.filter(|_| inside).map(|s| s.value), velocity: None }
+        Probe { at: at.to_vec(), value: sample.filter(|_| inside).map(|s| s.value), ..Probe::default() }
     };
     Ok(places.iter().zip(values).map(value).collect())
 }

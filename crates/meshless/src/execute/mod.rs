@@ -5,6 +5,7 @@ mod contacts;
 mod corners;
 mod discrete;
 mod estimate;
+mod figures;
 mod fluxes;
 mod free_space;
 mod honest;
@@ -32,7 +33,7 @@ use crate::{Error, NodalField, ParticleField};
 use balance::Ledger;
 pub(crate) use contacts::contacts;
 pub(crate) use discrete::{Discrete, Exact};
-pub(crate) use estimate::{Estimated, Unresolved, estimate};
+pub(crate) use estimate::{Estimated, Other, Unresolved, estimate};
 pub use linear::{PseudoTimeCost, linear_system, pseudo_time};
 pub use picture::Picture;
 pub use reproduce::{Reproduction, reproduce};
@@ -227,10 +228,10 @@ fn execute_in<const D: usize>(
     let diagnosis = plan
         .runs(Stage::Diagnosis)
         .then(|| diagnose_nodes(&problem, &solved.discretization, plan.method.params.order()));
-    let probes = measure::probes(scene, plan, &solved)?;
+    let mut probes = measure::probes(scene, plan, &solved)?;
     seconds.post = post.elapsed().as_secs_f64();
     let before = Instant::now();
-    let ledger = if plan.runs(Stage::Balance) {
+    let mut ledger = if plan.runs(Stage::Balance) {
         progress.stage(Stage::Balance);
         let ledger = Ledger::new(scene, plan, &solved)?;
         let flows = ledger.flows(&plan.method.params, &problem, &solved.system)?;
@@ -238,35 +239,55 @@ fn execute_in<const D: usize>(
     } else {
         None
     };
-    let balance = ledger.as_ref().map(|(ledger, flows)| ledger.report(flows));
-    let fluxes = match (&ledger, &balance) {
-        (Some((_, flows)), Some(balance)) if plan.runs(Stage::Fluxes) => Some(fluxes::fluxes(flows, balance)),
-        _ => None,
-    };
+    let mut balance = ledger.as_ref().map(|(ledger, flows)| ledger.report(flows));
     seconds.balance = before.elapsed().as_secs_f64();
     progress.stage(Stage::Estimate);
     let before = Instant::now();
     let thin_layer = thin_layer(scene, plan, &problem)?;
     let contacts = contacts(scene, &problem);
     let corners = corners::found(plan, &problem, &solved.discretization);
-    let Estimated { mut estimate, differences, finer } = if plan.runs(Stage::Estimate) {
+    let Estimated { mut estimate, differences, other } = if plan.runs(Stage::Estimate) {
         estimate(whole, plan, &solved, &Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts })?
     } else {
         Estimated::none("not asked for".to_owned())
     };
     seconds.estimate = before.elapsed().as_secs_f64();
     let before = Instant::now();
+    let mut others = match &ledger {
+        Some((ledger, _)) if plan.runs(Stage::Fluxes) => figures::other_flows(ledger, &problem, &other)?,
+        _ => None,
+    };
     if let Some((ledger, flows)) =
         ledger.as_ref().filter(|(l, flows)| honest::suspects(scene, l, flows, &estimate))
     {
-        let other = match &finer {
-            Some((method, system)) => Some(ledger.flows(method, &problem, system)?),
-            None => ledger.other_flows(&plan.method.params, &problem, &solved.system)?,
+        let own;
+        let second = match &other {
+            Other::Finer { .. } => {
+                if others.is_none() {
+                    others = figures::other_flows(ledger, &problem, &other)?;
+                }
+                others.as_ref().map(|(flows, _)| flows)
+            }
+            _ => {
+                own = ledger.other_flows(&plan.method.params, &problem, &solved.system)?;
+                own.as_ref()
+            }
         };
-        let reasons = [honest::by_balance(scene, ledger, flows, other.as_ref(), &estimate)];
+        let reasons = [honest::by_balance(scene, ledger, flows, second, &estimate)];
         honest::raise(&mut estimate, &reasons);
     }
     honest::raise(&mut estimate, &[corners::reason(scene, &problem, u, &corners)]);
+    figures::of_probes(scene, plan, &solved, (&other, &estimate), &mut probes)?;
+    let fluxes = match (&mut ledger, &mut balance) {
+        (Some((_, flows)), Some(balance)) if plan.runs(Stage::Fluxes) => {
+            if estimate.l2.is_some() {
+                let others = others.as_ref().map(|(flows, times)| (flows, *times));
+                figures::of_fluxes(scene, (flows, balance), others);
+            }
+            Some(fluxes::fluxes(flows, balance))
+        }
+        _ => None,
+    };
     seconds.balance += before.elapsed().as_secs_f64();
     let before = Instant::now();
     let picture = plan.runs(Stage::Plot).then(|| picture::draw(scene, plan, &solved)).transpose()?;
@@ -275,7 +296,8 @@ fn execute_in<const D: usize>(
     let kinds = &solved.discretization.kinds;
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
     let field = NodalField { estimate: differences, ..field };
-    let report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
+    let mut report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
+    figures::of_extrema(scene, &solved, (&other, &report.estimate), &mut report.extrema);
     let corners = corners::report(&corners, problem.domain.bounds().diameter());
     let report = Report { fallback, thin_layer, contacts, corners, fluxes, balance, ..report };
     let frames = solved.history.map_or_else(Vec::new, |history| history.frames);

@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use super::{Checkpoint, Progress, Solution, execute_once};
 use crate::plan::{AccuracyPlan, Plan};
-use crate::report::{AccuracyReport, ContactReport, Rung, ThinLayerReport};
-use crate::scene::Scene;
+use crate::report::{AccuracyReport, ContactReport, FluxReport, Report, Rung, ThinLayerReport};
+use crate::scene::{AccuracyOf, Scene};
 use crate::{Error, build};
 
 /// How much of the tolerance the estimate may take up.
@@ -72,7 +72,7 @@ pub(super) fn refine(
                 if let (Some(contact), None) = (report.contacts.first(), report.estimate.l2) {
                     return Err(at_contact(scene, goal, contact));
                 }
-                let estimate = report.estimate.l2;
+                let estimate = relative_error(report, goal.of);
                 thin = report.thin_layer.clone();
                 let why = report.estimate.why_not.clone();
                 let rung = Rung {
@@ -97,7 +97,8 @@ pub(super) fn refine(
         if let Some(mut solution) = solution
             && estimate.is_some_and(|e| e <= share * goal.tolerance)
         {
-            solution.report.accuracy = Some(AccuracyReport { tolerance: goal.tolerance, rungs });
+            solution.report.accuracy =
+                Some(AccuracyReport { tolerance: goal.tolerance, of: goal.of.as_str().to_owned(), rungs });
             solution.report.seconds.total =
                 solution.report.accuracy.iter().flat_map(|a| &a.rungs).map(|r| r.seconds).sum();
             return Ok(solution);
@@ -113,6 +114,28 @@ pub(super) fn refine(
         factor *= next_ratio(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance, blind);
     }
     Err(unmet(scene, goal, &rungs, refused, thin, None))
+}
+
+/// The estimated relative error of what a tolerance is about.
+fn relative_error(report: &Report, of: AccuracyOf) -> Option<f64> {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+    let over = |error: f64, size: f64| if size > 0.0 { error / size } else { error };
+    report.estimate.l2?;
+    match of {
+        AccuracyOf::U => report.estimate.l2,
+        AccuracyOf::Probes => {
+            let error = report.probes.iter().filter_map(|probe| probe.estimate).reduce(f64::max)?;
+            Some(over(error, largest(&mut [report.extrema.min, report.extrema.max].into_iter())))
+        }
+        AccuracyOf::Fluxes => {
+            let FluxReport { boundaries, interfaces, .. } = report.fluxes.as_ref()?;
+            let fluxes = boundaries.iter().map(|b| (b.flux, b.estimate));
+            let fluxes: Vec<(f64, Option<f64>)> =
+                fluxes.chain(interfaces.iter().map(|i| (i.flux, i.estimate))).collect();
+            let error = fluxes.iter().map(|flux| flux.1).try_fold(0.0, |m, e| Some(f64::max(m, e?)))?;
+            Some(over(error, largest(&mut fluxes.iter().map(|flux| flux.0))))
+        }
+    }
 }
 
 /// Whether what the balance leaves over falls so slowly that no cloud which is allowed has the tolerance.

@@ -44,7 +44,7 @@ pub(super) fn report<const D: usize>(
         errors,
         estimate,
         accuracy: None,
-        extrema: Extrema { min, max },
+        extrema: Extrema { min, max, estimate: None },
         speed: None,
         solver: SolverReport {
             name: info.name.to_string(),

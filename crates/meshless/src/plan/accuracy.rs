@@ -3,13 +3,15 @@
 use meshless_interfaces::sharp::Sharp;
 
 use super::effects::Survey;
-use crate::scene::{MethodName, Scene};
+use crate::scene::{AccuracyOf, MethodName, Scene};
 
 /// An error to reach, and how far to go for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AccuracyPlan {
-    /// Relative L2 error of u.
+    /// Relative error.
     pub tolerance: f64,
+    /// What it is about.
+    pub of: AccuracyOf,
     /// Nodes of the finest cloud that may be tried.
     pub max_nodes: f64,
 }
@@ -34,7 +36,7 @@ pub(super) struct Choice {
 impl AccuracyPlan {
     pub(super) fn new(scene: &Scene) -> Option<Self> {
         let spec = scene.accuracy.as_ref()?;
-        Some(Self { tolerance: spec.tolerance, max_nodes: spec.max_nodes as f64 })
+        Some(Self { tolerance: spec.tolerance, of: spec.of, max_nodes: spec.max_nodes as f64 })
     }
 
     /// Method and order for a scene that names no method.

@@ -269,7 +269,7 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
         );
     }
     decide(true, Stage::Balance, "");
-    decide(true, Stage::Estimate, "");
+    decide(scene.output.estimate, Stage::Estimate, "the scene asks for none");
     decide(scene.accuracy.is_some(), Stage::Refinement, "no error to reach is given");
     decide(scene.output.vtu, Stage::Diagnosis, "no field output asks for it");
     decide(scene.output.vtu, Stage::Vtu, "not asked for");

@@ -107,8 +107,10 @@ pub(super) fn predict(scene: &Scene, survey: &Survey, method: &MethodPlan) -> Re
     });
     let own = rates.points + rates.neighbors + made + solves;
     // The method at a higher order on the same nodes, or half as many nodes in every direction.
-    let finer = method.params.finer(scene.dimension).filter(|_| scene.time.is_none());
+    let finer =
+        method.params.finer(scene.dimension).filter(|_| scene.time.is_none() && scene.output.estimate);
     let estimate = match &finer {
+        _ if !scene.output.estimate => 0.0,
         Some(finer) => stencils(finer) + solve + FINER_BALANCE * balanced,
         None => own * 0.5_f64.powi(scene.dimension as i32),
     };

@@ -113,8 +113,9 @@ impl fmt::Display for Plan {
             writeln!(f, "transforms  forward: {}; back: {}", forward.join(", "), back.join(", "))?;
         }
         if let Some(accuracy) = &self.accuracy {
-            let AccuracyPlan { tolerance, max_nodes } = accuracy;
-            writeln!(f, "accuracy    relative error {tolerance:.1e}, at most {max_nodes:.0} nodes")?;
+            let AccuracyPlan { tolerance, of, max_nodes } = accuracy;
+            let of = of.as_str();
+            writeln!(f, "accuracy    relative error {tolerance:.1e} of {of}, at most {max_nodes:.0} nodes")?;
         }
         let stages: Vec<&str> = self.stages.iter().map(|s| s.name()).collect();
         writeln!(f, "stages      {}", stages.join(" -> "))?;

@@ -21,11 +21,39 @@ const LARGEST: f64 = 1.0;
 /// the square of that number: with 30 nodes on the line the estimates of `sharp` are 7e-15 to 6e-14, whatever its order.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
+/// What a tolerance is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AccuracyOf {
+    /// `u`: the relative L2 error.
+    #[default]
+    U,
+    /// `fluxes`: the largest error of a flux through a condition or an interface, over the largest of these fluxes.
+    Fluxes,
+    /// `probes`: the largest error of a probe, over the largest value of u.
+    Probes,
+}
+
+impl AccuracyOf {
+    const ALL: [(&'static str, Self); 3] =
+        [("u", Self::U), ("fluxes", Self::Fluxes), ("probes", Self::Probes)];
+
+    /// As scenes and reports have it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::U => "u",
+            Self::Fluxes => "fluxes",
+            Self::Probes => "probes",
+        }
+    }
+}
+
 /// An error to reach.
 #[derive(Debug, Clone)]
 pub struct AccuracySpec {
-    /// Relative L2 error of u, positive and below 1.
+    /// Relative error, positive and below 1.
     pub tolerance: f64,
+    /// What it is about.
+    pub of: AccuracyOf,
     /// Nodes of the finest cloud that may be tried.
     pub max_nodes: u64,
     /// The value in the file.
@@ -43,7 +71,8 @@ impl AccuracySpec {
         let span = 0..text.len();
         let place = Place::new(&Arc::new(Source::new("command line", &text)), "--tolerance", span);
         let max_nodes = scene.map_or(MAX_NODES[dimension - 1], |spec| spec.max_nodes);
-        Self { tolerance, max_nodes, place }.checked(dimension)
+        let of = scene.map_or(AccuracyOf::U, |spec| spec.of);
+        Self { tolerance, of, max_nodes, place }.checked(dimension)
     }
 
     fn checked(self, dimension: usize) -> Result<Self, SceneError> {
@@ -69,13 +98,22 @@ impl AccuracySpec {
 
 pub(super) fn accuracy(root: &Table<'_>) -> Result<Option<AccuracySpec>, SceneError> {
     let Some(value) = root.get("accuracy") else { return Ok(None) };
-    let table = value.subtable(&["tolerance", "max_nodes"])?;
+    let table = value.subtable(&["tolerance", "max_nodes", "of"])?;
     let tolerance = table.require("tolerance")?;
     let max_nodes = match table.get("max_nodes") {
         Some(value) => value.integer(1, crate::MAX_NODES as u64)?,
         None => MAX_NODES[value.dimension - 1],
     };
-    let spec = AccuracySpec { tolerance: tolerance.number()?, max_nodes, place: tolerance.place };
+    let of = match table.get("of") {
+        Some(of) => of.one_of(&AccuracyOf::ALL)?,
+        None => AccuracyOf::U,
+    };
+    if let (AccuracyOf::Probes, false, Some(key)) = (of, root.has("probes"), table.get("of")) {
+        return Err(
+            key.error("there are no probes", "add [[probes]] with `at`, or ask for \"u\" or \"fluxes\"")
+        );
+    }
+    let spec = AccuracySpec { tolerance: tolerance.number()?, of, max_nodes, place: tolerance.place };
     spec.checked(value.dimension).map(Some)
 }
 

@@ -32,7 +32,7 @@ mod time;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use accuracy::AccuracySpec;
+pub use accuracy::{AccuracyOf, AccuracySpec};
 pub use error::SceneError;
 pub use expression::ExprField;
 pub use free_space::{FreeSpaceSpec, GreenName, ParticlesSpec, SpreadName};

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use toml::de::DeTable;
 
+use super::accuracy::{AccuracyOf, AccuracySpec};
 use super::error::SceneError;
 use super::reader::Table;
 use super::source::{MAX_FILE_BYTES, Place, Source};
@@ -54,7 +55,7 @@ pub(super) fn scene(source: &Arc<Source>, given: Given) -> Result<Scene, SceneEr
         method: method::method(&root)?,
         time: time::time(&root)?,
         probes: probes(&root)?,
-        output: output(&root)?,
+        output: output(&root, accuracy.as_ref())?,
         accuracy,
         domain,
         points,
@@ -81,9 +82,23 @@ fn probes(root: &Table<'_>) -> Result<Vec<Vec<f64>>, SceneError> {
     root.tables("probes")?.into_iter().map(probe).collect()
 }
 
-fn output(root: &Table<'_>) -> Result<OutputSpec, SceneError> {
-    let Some(value) = root.get("output") else { return Ok(OutputSpec::default()) };
-    let table = value.subtable(&["vtu", "plot", "csv", "fluxes"])?;
-    let flag = |key: &str| table.get(key).map_or(Ok(false), |value| value.boolean());
-    Ok(OutputSpec { vtu: flag("vtu")?, plot: flag("plot")?, csv: flag("csv")?, fluxes: flag("fluxes")? })
+fn output(root: &Table<'_>, accuracy: Option<&AccuracySpec>) -> Result<OutputSpec, SceneError> {
+    // What a tolerance is about is reported.
+    let judged = accuracy.is_some_and(|spec| spec.of == AccuracyOf::Fluxes);
+    let Some(value) = root.get("output") else {
+        return Ok(OutputSpec { fluxes: judged, ..OutputSpec::default() });
+    };
+    let table = value.subtable(&["vtu", "plot", "csv", "fluxes", "estimate"])?;
+    let flag = |key: &str, default: bool| table.get(key).map_or(Ok(default), |value| value.boolean());
+    let estimate = flag("estimate", true)?;
+    if let (false, Some(_), Some(key)) = (estimate, accuracy, table.get("estimate")) {
+        return Err(key.error("a tolerance is reached by estimates", "remove the key, or [accuracy]"));
+    }
+    Ok(OutputSpec {
+        vtu: flag("vtu", false)?,
+        plot: flag("plot", false)?,
+        csv: flag("csv", false)?,
+        fluxes: flag("fluxes", false)? || judged,
+        estimate,
+    })
 }

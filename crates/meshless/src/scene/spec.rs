@@ -358,7 +358,7 @@ pub enum SolverName {
 }
 
 /// What to write besides the report; nothing, if the scene does not say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OutputSpec {
     /// Fields for ParaView.
     pub vtu: bool,
@@ -368,4 +368,12 @@ pub struct OutputSpec {
     pub csv: bool,
     /// Fluxes through boundaries and interfaces, in the report.
     pub fluxes: bool,
+    /// An estimate of the error; by default there is one.
+    pub estimate: bool,
+}
+
+impl Default for OutputSpec {
+    fn default() -> Self {
+        Self { vtu: false, plot: false, csv: false, fluxes: false, estimate: true }
+    }
 }

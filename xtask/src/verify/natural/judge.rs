@@ -1,6 +1,6 @@
 //! A run against the references.
 
-use meshless::report::Report;
+use meshless::report::{BoundaryFlux, Report};
 use meshless_tests::natural::references::{self, Figure, Quantity};
 
 use super::cases::Case;
@@ -13,8 +13,8 @@ pub(super) struct Judged {
     pub(super) values: Option<[f64; 2]>,
     /// Largest error of a flux over the largest flux.
     pub(super) flux: Option<f64>,
-    /// Largest error, over what the report gives for it: of a probe, the estimate for its region or the whole; of a flux, that or what
-    /// is left over of the balance.
+    /// Largest error, over what the report gives for it: of a probe, its own estimate; of a flux, its own or what is left over of the
+    /// balance.
     pub(super) over_estimate: Option<f64>,
 }
 
@@ -48,10 +48,11 @@ fn beyond(difference: f64, figure: &Figure) -> f64 {
 fn values(case: &Case, parameter: f64, report: &Report) -> Vec<Error> {
     let figures = || references::of(case.case, parameter);
     let error = |figure: &Figure| {
-        let value = report.probes.iter().find(|p| p.at == figure.at)?.value?;
+        let probe = report.probes.iter().find(|p| p.at == figure.at)?;
+        let value = probe.value?;
         let in_region = |f: &&Figure| f.quantity == Quantity::Rms && f.name == figure.name;
         let scale = figures().find(in_region).map_or(figure.value.abs(), |rms| rms.value);
-        let estimate = report.estimate.regions.get(figure.name).copied().or(report.estimate.l2);
+        let estimate = probe.estimate.map(|estimate| estimate / scale);
         Some((beyond(value - figure.value, figure) / scale, estimate))
     };
     figures().filter(|f| f.quantity == Quantity::Value).filter_map(error).collect()
@@ -64,8 +65,9 @@ fn fluxes(case: &Case, parameter: f64, report: &Report) -> Vec<Error> {
     let error = |figure: &&Figure| {
         let entry = case.conditions.iter().position(|name| *name == figure.name)?;
         let balance = report.balance.as_ref()?;
-        let flux = balance.into.iter().find(|b| b.entry == entry)?.flux;
-        let told = report.estimate.l2.map(|estimate| estimate.max(balance.left_over.abs() / scale));
+        let BoundaryFlux { flux, estimate, .. } = *balance.into.iter().find(|b| b.entry == entry)?;
+        let told = estimate.or(report.estimate.l2.map(|l2| l2 * scale));
+        let told = told.map(|estimate| estimate.max(balance.left_over.abs()) / scale);
         Some((beyond(flux - figure.value, figure) / scale, told))
     };
     known.iter().filter_map(error).collect()
@@ -98,6 +100,7 @@ mod tests {
             probes: vec![Probe {
                 at: value.at.clone(),
                 value: Some(value.value + 0.02 * rms.value),
+                estimate: Some(0.01 * rms.value),
                 velocity: None,
             }],
             balance: Some(BalanceReport {

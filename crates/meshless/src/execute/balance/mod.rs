@@ -214,7 +214,7 @@ impl<const D: usize> Ledger<D> {
         let entries = self.entries.iter().enumerate();
         Flows {
             boundaries: entries
-                .map(|(entry, face)| BoundaryFlux { face: face.clone(), entry, flux: 0.0, area: 0.0 })
+                .map(|(entry, face)| BoundaryFlux { face: face.clone(), entry, ..BoundaryFlux::default() })
                 .collect(),
             interfaces: Vec::new(),
             whole: Flow::default(),
@@ -231,7 +231,9 @@ impl<const D: usize> Ledger<D> {
                 known.flux += flux;
                 known.area += area;
             }
-            None => flows.interfaces.push(InterfaceFlux { between: names.to_vec(), flux, area }),
+            None => {
+                flows.interfaces.push(InterfaceFlux { between: names.to_vec(), flux, area, estimate: None })
+            }
         }
     }
 

@@ -73,7 +73,7 @@ pub(super) fn probes<const D: usize>(
             sum(source, &x, counts, of).to_vec()
         });
         // Where there is a vorticity alone, u is zero.
-        Probe { at: at.clone(), value: Some(value.unwrap_or(0.0)), velocity }
+        Probe { at: at.clone(), value: Some(value.unwrap_or(0.0)), velocity, ..Probe::default() }
     };
     Ok(scene.probes.iter().map(probe).collect())
 }

@@ -29,7 +29,7 @@ pub(super) struct Solved<'a> {
 fn extrema(values: &[f64]) -> Extrema {
     let start = (f64::INFINITY, f64::NEG_INFINITY);
     let (min, max) = values.iter().fold(start, |(l, h), &v| (l.min(v), h.max(v)));
-    Extrema { min, max }
+    Extrema { min, max, estimate: None }
 }
 
 pub(super) fn report<const D: usize>(
