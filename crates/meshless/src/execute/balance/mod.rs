@@ -232,7 +232,7 @@ impl<const D: usize> Ledger<D> {
                 known.area += area;
             }
             None => {
-                flows.interfaces.push(InterfaceFlux { between: names.to_vec(), flux, area, estimate: None })
+                flows.interfaces.push(InterfaceFlux { between: names.to_vec(), flux, area, estimate: None });
             }
         }
     }

@@ -61,7 +61,7 @@ fn every_section_is_read() {
     );
     assert_eq!(method.options, MethodOptions { smoothing: Some(1), ..MethodOptions::default() });
     assert_eq!(scene.probes, [[1.0, 0.2]]);
-    assert_eq!(scene.output, OutputSpec { vtu: true, plot: false, csv: false, fluxes: false });
+    assert_eq!(scene.output, OutputSpec { vtu: true, ..OutputSpec::default() });
 }
 
 /// A scene with a comment at every line, as the format's description has it.
@@ -108,7 +108,7 @@ plot = true                         # a picture of the solution
     assert_eq!(source.expr.eval(&[2.0, 0.0]), -20.0);
     assert!(matches!(&scene.boundaries[0].condition, ConditionSpec::Flux(f) if f.as_constant() == Some(1.0)));
     assert_eq!(scene.method.order, Some(4));
-    assert_eq!(scene.output, OutputSpec { vtu: true, plot: true, csv: false, fluxes: false });
+    assert_eq!(scene.output, OutputSpec { vtu: true, plot: true, ..OutputSpec::default() });
 }
 
 #[test]
