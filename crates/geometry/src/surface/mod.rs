@@ -158,6 +158,12 @@ impl TriangleSurface {
         self.smooth
     }
 
+    /// Whether it has edges of the part, and not of its triangulation only.
+    #[must_use]
+    pub fn has_creases(&self) -> bool {
+        self.crease_lines().next().is_some()
+    }
+
     /// Enclosed volume.
     pub fn volume(&self) -> f64 {
         self.volume

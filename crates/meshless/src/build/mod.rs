@@ -25,5 +25,5 @@ pub(crate) use points::{Placed, place};
 pub(crate) use shapes::{domain, regions, with_spacing_times};
 pub(crate) use slits::slits;
 pub(crate) use smooth::check_diffusivity_is_smooth;
-pub(crate) use surfaces::triangle_counts;
+pub(crate) use surfaces::{has_creased_regions, triangle_counts};
 pub(crate) use survey::{estimated_nodes, is_curved, sampled_contrast};

@@ -22,24 +22,42 @@ pub(super) fn surface(spec: &SurfaceSpec) -> Result<Arc<TriangleSurface>, Error>
     Ok(spec.loaded.get_or_init(|| Arc::new(surface)).clone())
 }
 
+/// Whether regions have surfaces of triangles with edges.
+pub(crate) fn has_creased_regions(scene: &Scene) -> Result<bool, Error> {
+    let shapes = scene.regions.iter().filter_map(|region| region.geometry.as_ref()).collect();
+    for spec in surfaces_of(shapes) {
+        if surface(spec)?.has_creases() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The surfaces of triangles that shapes are made of.
+fn surfaces_of(mut waiting: Vec<&ShapeSpec>) -> Vec<&SurfaceSpec> {
+    let mut found = Vec::new();
+    while let Some(shape) = waiting.pop() {
+        match shape {
+            ShapeSpec::Surface(spec) => found.push(spec),
+            ShapeSpec::Union(parts) | ShapeSpec::Intersection(parts) | ShapeSpec::Difference(parts) => {
+                waiting.extend(parts);
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
 /// Triangles of all surfaces of a scene, and how many had no extent and were left out.
 pub(crate) fn triangle_counts(scene: &Scene) -> Result<[usize; 2], Error> {
     let mut waiting: Vec<&ShapeSpec> = vec![&scene.domain.shape];
     waiting.extend(scene.holes.iter().map(|hole| &hole.shape));
     waiting.extend(scene.regions.iter().filter_map(|region| region.geometry.as_ref()));
     let mut counts = [0, 0];
-    while let Some(shape) = waiting.pop() {
-        match shape {
-            ShapeSpec::Surface(spec) => {
-                let surface = surface(spec)?;
-                counts[0] += surface.triangles().len();
-                counts[1] += surface.degenerate();
-            }
-            ShapeSpec::Union(parts) | ShapeSpec::Intersection(parts) | ShapeSpec::Difference(parts) => {
-                waiting.extend(parts);
-            }
-            _ => {}
-        }
+    for spec in surfaces_of(waiting) {
+        let surface = surface(spec)?;
+        counts[0] += surface.triangles().len();
+        counts[1] += surface.degenerate();
     }
     Ok(counts)
 }

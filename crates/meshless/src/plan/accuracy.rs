@@ -52,6 +52,9 @@ impl AccuracyPlan {
             let why = "interfaces are known from labels only: balances have the fluxes";
             return choice(MethodName::GfdmHybrid, None, why);
         }
+        if let Some(why) = survey.needs_balances(scene) {
+            return choice(MethodName::GfdmConservative, None, why);
+        }
         // Fluxes take gradients up to interfaces.
         // Singular corners take functions of their own.
         if jumps && tolerance >= COARSE && !scene.output.fluxes && !survey.has_corners(scene) {
@@ -64,9 +67,6 @@ impl AccuracyPlan {
         if scene.time.is_none() {
             let order = self.order_of(SHARP_ORDERS[scene.dimension - 1]);
             return choice(MethodName::Sharp, order, "high order on both sides of interfaces");
-        }
-        if survey.needs_balances(scene) {
-            return choice(MethodName::GfdmConservative, None, super::choose::CORNERS_IN_TIME);
         }
         let high = scene.method.order.is_some_and(|order| order > 2 && Sharp::offers(order, scene.dimension));
         if jumps && (high || scene.output.fluxes) {

@@ -92,17 +92,14 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     Ok(described(name, why, scene, survey))
 }
 
-/// Why a scene in time takes balances.
-pub(super) const CORNERS_IN_TIME: &str = "corners at interfaces lose heat where fits meet them, and have functions of their own in steady scenes only: balances everywhere";
-
 /// What a scene takes where something jumps at an interface and no tolerance is given: fits of high order, unless the
-/// interfaces are known roughly only, or u changes with time. In time corners have no functions of their own, and fits lose heat there.
+/// interfaces are known roughly only, u changes with time, or fits would lose heat.
 fn at_interfaces(scene: &Scene, survey: &Survey) -> (MethodName, &'static str) {
     let labels = scene.is_labelled() || scene.method.options.interfaces == Some(InterfacesName::Labels);
     if labels {
         (MethodName::GfdmHybrid, "interfaces are known to a share of the spacing only: balances there")
-    } else if survey.needs_balances(scene) {
-        (MethodName::GfdmConservative, CORNERS_IN_TIME)
+    } else if let Some(why) = survey.needs_balances(scene) {
+        (MethodName::GfdmConservative, why)
     } else if scene.time.is_some() && !scene.output.fluxes || !offered(scene) {
         (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere")
     } else {

@@ -126,6 +126,8 @@ pub(super) struct Survey {
     pub(super) contrast: f64,
     /// Whether the sharp method has functions for any of the corners.
     servable: bool,
+    /// Whether regions have surfaces of triangles with edges.
+    creased: bool,
 }
 
 impl Survey {
@@ -176,7 +178,8 @@ impl Survey {
             effects.push(Effect::Corners { count: corners.len(), exponent });
         }
         let servable = corners.iter().any(|corner| corner.obstacle == Some(Obstacle::Method));
-        Ok(Self { effects, uniform, contrast, servable })
+        let creased = build::has_creased_regions(scene)?;
+        Ok(Self { effects, uniform, contrast, servable, creased })
     }
 
     pub(super) fn has(&self, test: fn(&Effect) -> bool) -> bool {
@@ -193,13 +196,25 @@ impl Survey {
         scene.time.is_none() && (self.has_corners(scene) || self.servable)
     }
 
-    /// Whether corners at interfaces of a scene in time, of no order in particular, lose heat where fits meet them.
-    pub(super) fn needs_balances(&self, scene: &Scene) -> bool {
+    /// Why fits would lose heat at the interfaces of a scene of no order in particular, so that it takes balances everywhere; `None` where they
+    /// do not.
+    pub(super) fn needs_balances(&self, scene: &Scene) -> Option<&'static str> {
         let singular = |e: &Effect| matches!(e, Effect::Corners { exponent, .. } if *exponent < SMOOTH);
-        scene.time.is_some()
-            && scene.method.order.is_none_or(|order| order <= BALANCE_ORDER)
-            && self.has_interface()
-            && self.has(singular)
+        let any_order = scene.method.order.is_none_or(|order| order <= BALANCE_ORDER);
+        if !any_order || !self.has_interface() || scene.is_labelled() {
+            None
+        } else if self.creased {
+            Some(
+                "fits lose heat at edges of interfaces of triangles, for which they have no functions: balances everywhere",
+            )
+        } else if scene.time.is_some() && self.has(singular) {
+            Some(
+                "corners at interfaces lose heat where fits meet them, and have functions of their own in steady scenes only: \
+                 balances everywhere",
+            )
+        } else {
+            None
+        }
     }
 
     /// Whether anything happens at an interface at all.
