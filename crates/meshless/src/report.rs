@@ -247,10 +247,10 @@ pub struct RegionErrors {
     pub gradient_linf: f64,
 }
 
-/// Error estimated by comparison with a coarser cloud.
+/// Error estimated by comparison with another solution: of a higher degree on the same cloud, or on a coarser one.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Estimate {
-    /// Relative L2 norm; absent where the coarser cloud cannot be solved on.
+    /// Relative L2 norm; absent where there is nothing to compare with, or where no comparison can be trusted.
     pub l2: Option<f64>,
     /// The same over each region by itself, by name, where there are several: u may be much smaller in one than in another. A region in which u
     /// is round-off has none.
@@ -259,7 +259,7 @@ pub struct Estimate {
     /// Why there is no estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
-    /// What says that the error is larger than the comparison does, where something does: `balance`.
+    /// What says that the error is larger than the comparison does, where something does: `balance` or `corners`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raised_by: Option<String>,
     /// What the comparison said of the whole, where that was raised.

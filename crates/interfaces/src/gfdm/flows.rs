@@ -44,7 +44,7 @@ pub struct CellFlows<const D: usize> {
     pub walls: Vec<CellWall<D>>,
     /// Between regions, each pair of cells from either side.
     pub seams: Vec<CellSeam>,
-    /// What the cells hold, and what arises in them, by node and region; and the rates of change there.
+    /// The parts of all cells by regions, each with the rate of change `du/dt` at its node; zero in steady problems.
     pub parts: Vec<(CellPart, f64)>,
 }
 

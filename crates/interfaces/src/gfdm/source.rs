@@ -17,7 +17,7 @@ const HALVINGS: u32 = 30;
 /// Difference of the sources of both sides, over their size, up to which they are one.
 const SAME: f64 = 1e-12;
 
-/// What of a region is in a cell.
+/// The part of a cell that is in one region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellPart {
     /// The region.

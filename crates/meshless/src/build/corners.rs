@@ -1,4 +1,4 @@
-//! The corners of a scene, before it has a cloud.
+//! The corners of a scene, before it has a cloud, and the spacings that they ask for.
 
 use meshless_geometry::Size;
 use meshless_interfaces::{Corner, CornerData, Obstacle, corners};
@@ -17,6 +17,9 @@ const ORDER: f64 = 4.0;
 /// The least spacing at a corner, over what is clear round it; and the least that has to be clear, over the spacing given there: surfaces
 /// that touch have corners at a distance of rounding.
 const LEAST_PART: f64 = 1e-6;
+
+/// Places along a straight part of an edge in space at which a spacing is asked for, at most.
+const MOST_ALONG: f64 = 1e4;
 
 /// The vertices of a scene, and in space edges, whose solutions have a power below `order` that is no polynomial; none where regions
 /// are known by labels only, and in free space.
@@ -47,9 +50,6 @@ fn in_dimension<const D: usize>(scene: &Scene, order: usize) -> Result<Vec<Corne
     };
     Ok(corners(&data, order))
 }
-
-/// Places along a straight part of an edge in space at which a spacing is asked for, at most.
-const MOST_ALONG: f64 = 1e4;
 
 /// What a method makes of corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
