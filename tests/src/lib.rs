@@ -3,6 +3,7 @@
 //! A problem is a scene: text that a user could have written, with parameters filled in. Every problem is in a file of
 //! its own and says where it is from.
 
+pub mod effects;
 pub mod fietier;
 pub mod head;
 pub mod kraus;

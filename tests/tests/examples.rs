@@ -21,8 +21,9 @@ const fn example(name: &'static str, spacing: &'static str, l2: f64) -> Example 
 
 /// Bounds are about one and a half times what was measured: the error that a method of the order that `docs/` promises
 /// has at this spacing; round-off where the solution is in the space of the polynomials.
-const EXAMPLES: [Example; 25] = [
+const EXAMPLES: [Example; 27] = [
     example("ball", "0.16", 1e-11),
+    Example { name: "channel", spacing: "0.1", l2: None },
     example("charge", "0.05", 1e-7),
     example("chip", "0.1", 1.6e-2),
     example("crack", "0.08", 5e-3),
@@ -30,6 +31,7 @@ const EXAMPLES: [Example; 25] = [
     example("electrode", "0.08", 1.4e-2),
     Example { name: "gear", spacing: "0.004", l2: None },
     Example { name: "fibres", spacing: "0.08", l2: None },
+    example("film", "0.002", 5e-4),
     example("flow", "0.08", 3.5e-3),
     Example { name: "head", spacing: "0.5", l2: None },
     // Its points come from a file.

@@ -22,9 +22,14 @@ pub(crate) fn print(report: &Report) {
 fn balance(balance: &BalanceReport, report: &Report) {
     let enters: f64 = balance.into.iter().map(|part| part.flux).sum();
     let stored = balance.stored.map_or(String::new(), |stored| format!(", stored {stored:.6e}"));
+    let part = |name: &str, value: Option<f64>| match value {
+        Some(value) if value != 0.0 => format!(", {name} {value:.6e}"),
+        _ => String::new(),
+    };
+    let taken = part("reacted", balance.reacted) + &part("carried away", balance.carried);
     let (left, relative) = (balance.left_over, balance.relative);
     say!(
-        "balance     enters {enters:.6e}, sources {:.6e}{stored}: {left:.1e} left over, {relative:.1e} of the parts",
+        "balance     enters {enters:.6e}, sources {:.6e}{stored}{taken}: {left:.1e} left over, {relative:.1e} of the parts",
         balance.sources.total
     );
     let estimate = &report.estimate;

@@ -26,14 +26,14 @@
 //! let regions = RegionMap::new(vec![Some(Shape::cuboid([0.0], [1.0])?), None])?;
 //! let labels = regions.labels(&cloud);
 //! let eta: Vec<f64> = labels.iter().map(|&l| if l == 0 { 1.0 } else { 1000.0 }).collect();
-//! let materials = [1.0, 1000.0].map(|eta| Material { diffusivity: Field::Constant(eta), source: None });
+//! let materials = [1.0, 1000.0].map(|eta| Material::new(Field::Constant(eta)));
 //! let boundary = |_face, x: &[f64; 1]| Some(Condition::Dirichlet(1.0 - 0.5 * x[0]));
 //! let conditions = cloud.boundary().iter()
 //!     .map(|node| vec![Condition::Dirichlet(1.0 - 0.5 * cloud.points()[node.node as usize][0])]).collect::<Vec<_>>();
 //! let problem = Problem {
 //!     cloud: &cloud, domain: &domain, supports: Supports { lists: &lists, radius: &radius }, regions: &regions,
 //!     labels: &labels, materials: &materials, eta: &eta, source: None, conditions: &conditions,
-//!     boundary: &boundary, jumps: &[], jump_rates: &[], slits: &[] };
+//!     boundary: &boundary, laws: &[], law_rates: &[], slits: &[] };
 //! let discretization = Gfdm { params: GfdmParams::conservative() }.discretize(&problem)?;
 //! let solution = solve(&problem, &discretization, &Default::default())?;
 //! // Nearly all of the drop is in the first material.
@@ -47,6 +47,7 @@ mod adjacency;
 mod corners;
 pub mod dcpse;
 mod diagnosis;
+mod equation;
 mod error;
 mod field;
 pub mod gfdm;
@@ -72,6 +73,7 @@ pub mod thin_layers;
 pub use adjacency::adjacent_pairs;
 pub use corners::{Corner, CornerData, Obstacle, corners};
 pub use diagnosis::{NodeDiagnosis, diagnose_nodes};
+pub use equation::{BoundaryData, Condition, InterfaceLaw, Material};
 pub use error::{MethodError, RegionName};
 pub use field::{Field, ScalarField};
 pub use gradient_rows::GradientRow;
@@ -80,7 +82,7 @@ pub use instances::instances;
 pub use method::{
     Counts, Discretization, InterfaceFlow, InterfaceFlux, InterfacePoint, Method, RowKind, SplitRows,
 };
-pub use problem::{BoundaryData, Condition, InterfaceJump, Material, Problem, Supports};
+pub use problem::{Problem, Supports};
 pub use row_report::RowReport;
 pub use sample::{Sample, SampleScratch, Sampler};
 pub use slit::{SlitCondition, SlitInterface};

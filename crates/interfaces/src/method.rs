@@ -59,9 +59,11 @@ pub struct Discretization {
     /// Where a method splits off the constants of stiff regions itself: what its rows act on. `None` for rows in
     /// nodal values, whose constants the shared layer splits off.
     pub constants: Option<SplitRows>,
-    /// The rows of M in `M du/dt + A u = b`, over the values of the nodes. `None` for the volume of every row on the diagonal,
+    /// The rows of M in `M du/dt + A u = b`, over the values of the nodes. `None` for the capacity of every row on the diagonal,
     /// and zero for prescribed values and collocated boundary conditions.
     pub mass: Option<DifferenceMatrix>,
+    /// The integral of the capacity that belongs to every row, where that is not the volume times the capacity at the node.
+    pub capacities: Option<Vec<f64>>,
     /// How every row was made.
     pub kinds: Vec<RowKind>,
     /// Measure that belongs to every node: the volume of its cell where there is one, else `spacing^D`.
@@ -130,13 +132,14 @@ impl Discretization {
         counts: Counts,
         stencil_seconds: f64,
     ) -> Self {
-        let (constants, mass, gradients, corners) = (None, None, None, None);
+        let (constants, mass, capacities, gradients, corners) = (None, None, None, None, None);
         let (interface_points, interface_fluxes) = (Vec::new(), Vec::new());
         Self {
             rows,
             rhs,
             constants,
             mass,
+            capacities,
             kinds,
             volumes,
             counts,

@@ -1,70 +1,10 @@
 //! The discretised problem: what every method reads, and nothing of how it was described.
-//!
-//! The equation is `-div(eta grad u) = f`. Across the interface from region A to region B, with the normal n pointing
-//! from A to B, `u_B - u_A = a` and `(eta du/dn)_B - (eta du/dn)_A = b`.
 
-use meshless_geometry::{Cloud, Domain, FaceId, RegionMap};
+use meshless_geometry::{Cloud, Domain, RegionMap};
 use meshless_neighbors::NeighborLists;
 
-use crate::{Field, MethodError, SlitInterface};
-
-/// The data of one region.
-#[derive(Debug, Clone)]
-pub struct Material<const D: usize> {
-    /// The diffusivity eta, positive.
-    pub diffusivity: Field<D>,
-    /// The source f; `None` where the scene has none.
-    pub source: Option<Field<D>>,
-}
-
-/// What is prescribed at a boundary point; n is the outward normal.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Condition {
-    /// `u = value`
-    Dirichlet(f64),
-    /// `du/dn = value`
-    Neumann(f64),
-    /// `eta du/dn = value`
-    Flux(f64),
-    /// `a u + b eta du/dn = g`
-    Robin {
-        /// Factor of the value.
-        a: f64,
-        /// Factor of the flux, not zero.
-        b: f64,
-        /// Right-hand side.
-        g: f64,
-    },
-}
-
-/// The boundary conditions as functions of position, for methods that need them off the nodes.
-pub trait BoundaryData<const D: usize>: Sync {
-    /// The condition on `face` at `point`, `None` where the problem gives none.
-    fn condition(&self, face: FaceId, point: &[f64; D]) -> Option<Condition>;
-}
-
-impl<const D: usize, F> BoundaryData<D> for F
-where
-    F: Fn(FaceId, &[f64; D]) -> Option<Condition> + Sync,
-{
-    fn condition(&self, face: FaceId, point: &[f64; D]) -> Option<Condition> {
-        self(face, point)
-    }
-}
-
-/// What jumps across the interface between two regions besides the diffusivity.
-#[derive(Debug, Clone)]
-pub struct InterfaceJump<const D: usize> {
-    /// The regions A and B; the normal points from A to B.
-    pub between: [u16; 2],
-    /// `u_B - u_A`, `None` for zero.
-    pub value: Option<Field<D>>,
-    /// `(eta du/dn)_B - (eta du/dn)_A`, `None` for zero.
-    pub flux: Option<Field<D>>,
-    /// u on the interface, where it is prescribed there; the flux then jumps by whatever that takes, and `flux` is `None`.
-    /// For methods that have the jump as an unknown.
-    pub prescribed: Option<Field<D>>,
-}
+use crate::equation::between;
+use crate::{BoundaryData, Condition, InterfaceLaw, Material, MethodError, SlitInterface};
 
 /// The supports of all nodes: whom a node may use, and how far its interaction reaches.
 #[derive(Debug, Clone, Copy)]
@@ -98,10 +38,10 @@ pub struct Problem<'a, const D: usize> {
     pub conditions: &'a [Vec<Condition>],
     /// The same conditions as functions of position.
     pub boundary: &'a dyn BoundaryData<D>,
-    /// Prescribed jumps.
-    pub jumps: &'a [InterfaceJump<D>],
+    /// Laws of the interfaces at which something jumps.
+    pub laws: &'a [InterfaceLaw<D>],
     /// How fast they change, of those that change with time; empty in steady problems.
-    pub jump_rates: &'a [InterfaceJump<D>],
+    pub law_rates: &'a [InterfaceLaw<D>],
     /// Interfaces that end inside the domain.
     pub slits: &'a [SlitInterface<D>],
 }
@@ -194,53 +134,45 @@ impl<const D: usize> Problem<'_, D> {
         known
     }
 
-    /// The prescribed jump between the regions of two nodes, with the sign that belongs to going from `from` to `to`.
-    pub fn jump_between(&self, from: u16, to: u16) -> Option<(&InterfaceJump<D>, f64)> {
-        between(self.jumps, from, to)
+    /// The law of the interface between two regions, with the sign that belongs to going from `from` to `to`; `None` where they are perfectly
+    /// joined.
+    pub fn law_between(&self, from: u16, to: u16) -> Option<(&InterfaceLaw<D>, f64)> {
+        between(self.laws, from, to)
     }
 
     /// How fast it changes, likewise.
-    pub fn jump_rate_between(&self, from: u16, to: u16) -> Option<(&InterfaceJump<D>, f64)> {
-        between(self.jump_rates, from, to)
+    pub fn law_rate_between(&self, from: u16, to: u16) -> Option<(&InterfaceLaw<D>, f64)> {
+        between(self.law_rates, from, to)
     }
 
-    /// Whether u is fixed somewhere: by a Dirichlet value, or by a Robin condition with `a != 0`.
+    /// The velocity at a node, that of its own region.
+    pub fn velocity(&self, i: usize) -> [f64; D] {
+        self.materials[self.labels[i] as usize].velocity_at(&self.cloud.points()[i])
+    }
+
+    /// The factor of u at a node, likewise.
+    pub fn reaction(&self, i: usize) -> f64 {
+        self.materials[self.labels[i] as usize].reaction_at(&self.cloud.points()[i])
+    }
+
+    /// The factor of du/dt at a node, likewise.
+    pub fn capacity(&self, i: usize) -> f64 {
+        self.materials[self.labels[i] as usize].capacity_at(&self.cloud.points()[i])
+    }
+
+    /// Whether any region has a factor of du/dt that is not 1.
+    pub fn has_capacities(&self) -> bool {
+        self.materials.iter().any(|material| material.capacity.is_some())
+    }
+
+    /// Whether the equation of any region has terms in u and its gradient beside the diffusion.
+    pub fn has_lower_terms(&self) -> bool {
+        self.materials.iter().any(Material::has_lower_terms)
+    }
+
+    /// Whether u is fixed somewhere: by a Dirichlet value, by a Robin condition with `a != 0`, or by a reaction.
     pub fn is_anchored(&self) -> bool {
-        self.conditions.iter().flatten().any(Condition::anchors)
-    }
-}
-
-/// The jump between two regions in a list, with the sign that belongs to going from one to the other.
-pub(crate) fn between<const D: usize>(
-    jumps: &[InterfaceJump<D>],
-    from: u16,
-    to: u16,
-) -> Option<(&InterfaceJump<D>, f64)> {
-    jumps.iter().find_map(|jump| match jump.between {
-        [a, b] if (a, b) == (from, to) => Some((jump, 1.0)),
-        [a, b] if (b, a) == (from, to) => Some((jump, -1.0)),
-        _ => None,
-    })
-}
-
-impl Condition {
-    /// The condition in the form `a u + eta du/dn = g`, as `(a, g)`; `None` for a Dirichlet condition and for a Robin
-    /// condition without flux. `eta` turns du/dn into a flux.
-    pub(crate) fn as_flux(&self, eta: f64) -> Option<(f64, f64)> {
-        match *self {
-            Self::Dirichlet(_) => None,
-            Self::Neumann(g) => Some((0.0, eta * g)),
-            Self::Flux(g) => Some((0.0, g)),
-            Self::Robin { a, b, g } => (b != 0.0).then_some((a / b, g / b)),
-        }
-    }
-
-    /// Whether the condition fixes the constant of u.
-    pub fn anchors(&self) -> bool {
-        match *self {
-            Self::Dirichlet(_) => true,
-            Self::Robin { a, .. } => a != 0.0,
-            Self::Neumann(_) | Self::Flux(_) => false,
-        }
+        let reacts = self.materials.iter().any(|material| material.reaction.is_some());
+        reacts || self.conditions.iter().flatten().any(Condition::anchors)
     }
 }

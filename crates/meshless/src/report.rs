@@ -94,10 +94,16 @@ pub struct BalanceReport {
     pub into: Vec<BoundaryFlux>,
     /// What arises inside.
     pub sources: SourceReport,
-    /// The rate of what is stored at the end, in scenes with time: the integral of du/dt.
+    /// The rate of what is stored at the end, in scenes with time: the integral of `capacity du/dt`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stored: Option<f64>,
-    /// What enters and arises, less what is stored.
+    /// What the reaction takes up: the integral of `reaction u`. Where the equation has neither that nor a velocity, there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reacted: Option<f64>,
+    /// What the velocity carries away: the integral of `velocity . grad u`; likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carried: Option<f64>,
+    /// What enters and arises, less what is stored, reacts, and is carried away.
     pub left_over: f64,
     /// The size of that over the sum of the sizes of the parts, the integrals of the flux's size among them.
     pub relative: f64,
@@ -128,7 +134,13 @@ pub struct RegionBalance {
     /// The rate of what is stored, in scenes with time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stored: Option<f64>,
-    /// What enters and arises, less what is stored.
+    /// What the reaction takes up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reacted: Option<f64>,
+    /// What the velocity carries away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carried: Option<f64>,
+    /// What enters and arises, less what is stored, reacts, and is carried away.
     pub left_over: f64,
     /// The size of that over the sum of the sizes of the parts.
     pub relative: f64,

@@ -21,7 +21,7 @@ pub(super) fn laplace(plan: &Plan) -> Result<Vec<f64>, Box<dyn std::error::Error
     let lists = within_radius(cloud.points(), Radius::PerPoint(&radius), Distance::D2)?;
     let regions = RegionMap::new(vec![None])?;
     let (labels, eta) = (vec![0; cloud.len()], vec![1.0; cloud.len()]);
-    let materials = [Material { diffusivity: Field::Constant(1.0), source: None }];
+    let materials = [Material::new(Field::Constant(1.0))];
     let value = |x: &[f64; 2]| Condition::Dirichlet(x[0]);
     let at_nodes = |node: &meshless_geometry::BoundaryNode<2>| {
         vec![value(&cloud.points()[node.node as usize]); node.touches.len()]
@@ -39,8 +39,8 @@ pub(super) fn laplace(plan: &Plan) -> Result<Vec<f64>, Box<dyn std::error::Error
         source: None,
         conditions: &conditions,
         boundary: &boundary,
-        jumps: &[],
-        jump_rates: &[],
+        laws: &[],
+        law_rates: &[],
         slits: &[],
     };
     let discretization = plan.method.params.build().discretize(&problem)?;

@@ -4,6 +4,7 @@ mod claims;
 mod cost;
 mod csv;
 mod dcpse;
+mod effects;
 mod figure;
 mod freespace;
 mod gfdm;

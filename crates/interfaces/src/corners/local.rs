@@ -9,7 +9,7 @@ use super::straightening::Straightening;
 use super::wedge::{End, Forced, Harmonic, RayData, Sector, Wedge};
 use super::{Corner, CornerData, condition_at};
 use crate::Condition;
-use crate::problem::between;
+use crate::equation::between;
 
 /// Where diffusivities and the kinds of conditions beside a vertex are read, over the length of its shortest ray.
 const BESIDE: f64 = 1e-3;
@@ -75,6 +75,8 @@ pub enum Obstacle {
     Data,
     /// In space: sources or data that are not the same all along an edge.
     VariesAlong,
+    /// An interface with a resistance or partition coefficients that meets there.
+    Contact,
     /// Nodes are too far apart for the sides that meet there.
     Spacing,
     /// The method has no corner functions.
@@ -91,6 +93,7 @@ impl Obstacle {
             Self::Touching => "several parts of the domain touch there",
             Self::Data => "the data there have no value, or change their kind",
             Self::VariesAlong => "the data change along the edge",
+            Self::Contact => "u differs on both sides of an interface that meets there",
             Self::Spacing => "the sides that meet there are shorter than a few spacings",
             Self::Method => "the method has no corner functions there",
         }
@@ -318,7 +321,7 @@ impl Local {
                 for ray in 0..self.wedge.inner_rays() {
                     let x: [f64; D] = self.frame.place(self.on_ray(ray + 1, r), z);
                     let labels = [self.labels[ray], self.labels[(ray + 1) % sectors]];
-                    let Some((jump, _)) = between(problem.jumps, labels[0], labels[1]) else { continue };
+                    let Some((jump, _)) = between(problem.laws, labels[0], labels[1]) else { continue };
                     here.extend([&jump.value, &jump.flux].map(|f| f.as_ref().map_or(0.0, |f| f.at(&x))));
                 }
                 for (face, ray) in self.faces.iter().zip([0, sectors]) {
@@ -375,11 +378,13 @@ impl Local {
             _ => outside.iter().map(|k| (k + 1) % count).filter(|&k| vertex.sectors[k].is_some()).collect(),
         };
         let touching = (firsts.len() > 1).then_some(Obstacle::Touching);
-        let mut of_part = |&first: &usize| {
-            let own = (0..count).map(|k| (first + k) % count).take_while(|&k| vertex.sectors[k].is_some());
-            Self::of_part(problem, (frame, vertex), &own.collect::<Vec<_>>(), known)
+        let part = |&first: &usize| -> Vec<usize> {
+            (0..count).map(|k| (first + k) % count).take_while(|&k| vertex.sectors[k].is_some()).collect()
         };
-        let mut all: Vec<Self> = firsts.iter().filter_map(&mut of_part).collect();
+        let parts = firsts.iter().map(part).flat_map(|own| between_films(problem, vertex, own));
+        let mut all: Vec<Self> = parts
+            .filter_map(|(own, films)| Self::of_part(problem, (frame, vertex), (&own, films), known))
+            .collect();
         all.iter_mut().for_each(|local| local.obstacle = local.obstacle.or(touching));
         all
     }
@@ -387,10 +392,10 @@ impl Local {
     fn of_part<const D: usize>(
         problem: &CornerData<'_, D>,
         (frame, vertex): (&Frame, &Vertex),
-        own: &[usize],
+        (own, films): (&[usize], [bool; 2]),
         known: &mut KnownWedges,
     ) -> Option<Self> {
-        let closed = own.len() == vertex.rays.len();
+        let closed = own.len() == vertex.rays.len() && films == [false; 2];
         let mut obstacle = None;
         let mut note = |found: bool, what: Obstacle| {
             if found && obstacle.is_none() {
@@ -407,6 +412,9 @@ impl Local {
         let beside = BESIDE * vertex.clear;
         let labels: Vec<u16> = own.iter().filter_map(|&k| vertex.sectors[k]).collect();
         let start = vertex.rays[own[0]].angle;
+        note(films != [false; 2], Obstacle::Contact);
+        // With partition coefficients `u / K` goes on, and `eta K` conducts it.
+        let (mut partition, mut before) = (1.0, None);
         let (mut sectors, mut turned) = (Vec::new(), start);
         for (&k, &label) in own.iter().zip(&labels) {
             let opening = vertex.opening(k);
@@ -418,17 +426,27 @@ impl Local {
             if !(eta > 0.0 && eta.is_finite()) {
                 return None;
             }
-            sectors.push(Sector { opening, eta, scale: 1.0 });
+            if let Some((law, sign)) = before.and_then(|before| between(problem.laws, before, label))
+                && law.partition[0] != law.partition[1]
+            {
+                note(true, Obstacle::Contact);
+                partition *= (law.partition[1] / law.partition[0]).powf(sign);
+            }
+            before = Some(label);
+            sectors.push(Sector { opening, eta: eta * partition, scale: 1.0 });
             turned += opening;
         }
         let outer = [rays[0], rays[rays.len() - 1]];
+        // Films have no face, and their flux is of no lower power than others.
+        let face = |(&k, film): (&usize, bool)| vertex.rays[k].face.or(film.then_some(FaceId(0)));
         let faces: Vec<FaceId> =
-            if closed { Vec::new() } else { outer.iter().filter_map(|&k| vertex.rays[k].face).collect() };
+            if closed { Vec::new() } else { outer.iter().zip(films).filter_map(face).collect() };
         let mut ends = None;
         if !closed {
             let [first, last] = [faces.first()?, faces.get(1)?];
             let mut found = [End::Flux; 2];
-            for (end, (&ray, &face)) in found.iter_mut().zip(outer.iter().zip([first, last])) {
+            let rays = found.iter_mut().zip(outer.iter().zip([first, last])).zip(films);
+            for ((end, (&ray, &face)), _) in rays.filter(|(_, film)| !film) {
                 let x = frame.place(vertex.along(ray, beside), 0.0);
                 match problem.boundary.condition(face, &x) {
                     Some(Condition::Dirichlet(_)) => *end = End::Dirichlet,
@@ -535,6 +553,9 @@ impl Local {
         scales: &mut Scales,
         degree: usize,
     ) -> Result<LocalSolution, Obstacle> {
+        if self.obstacle == Some(Obstacle::Contact) {
+            return Err(Obstacle::Contact);
+        }
         let mut wedge = self.wedge.clone();
         wedge.sectors.iter_mut().zip(&scales.scale).for_each(|(sector, &scale)| sector.scale = scale);
         let functions: Vec<Harmonic> =
@@ -594,7 +615,7 @@ impl Local {
             let next = (ray + 1) % sectors;
             all[0].values[ray] = scales.offset[ray] - scales.offset[next];
             let (before, after) = (self.labels[ray], self.labels[next]);
-            let Some((jump, sign)) = between(problem.jumps, before, after) else { continue };
+            let Some((jump, sign)) = between(problem.laws, before, after) else { continue };
             let at = |t: f64| self.in_space(self.on_ray(ray + 1, t));
             if let Some(field) = &jump.value {
                 let values = polynomial(ray + 1, &|t| Some(sign * field.at(&at(t))))?;
@@ -918,4 +939,39 @@ fn along(radius: f64, degree: usize, value: &dyn Fn(f64) -> Option<f64>) -> Opti
         error = error.max((polynomial(place(between)) - at(between)?).abs());
     }
     Some((factors, error))
+}
+/// Sectors between the interfaces with a resistance that meet in a vertex, and whether such an interface begins and ends them. Near the vertex
+/// hardly anything flows through these: the resistance of a sector falls with the distance, and theirs does not.
+fn between_films<const D: usize>(
+    problem: &CornerData<'_, D>,
+    vertex: &Vertex,
+    mut own: Vec<usize>,
+) -> Vec<(Vec<usize>, [bool; 2])> {
+    let count = vertex.rays.len();
+    let is_film = |k: usize| {
+        let pair = vertex.sectors[(k + count - 1) % count].zip(vertex.sectors[k]);
+        let law = pair.and_then(|(before, after)| between(problem.laws, before, after));
+        law.is_some_and(|(law, _)| law.resistance.is_some())
+    };
+    let closed = own.len() == count;
+    if let (true, Some(first)) = (closed, own.iter().position(|&k| is_film(k))) {
+        own.rotate_left(first);
+    }
+    let mut parts: Vec<(Vec<usize>, [bool; 2])> = Vec::new();
+    for k in own {
+        let begins = is_film(k);
+        match parts.last_mut().filter(|_| !begins) {
+            Some((part, _)) => part.push(k),
+            None => {
+                if let Some((_, films)) = parts.last_mut() {
+                    films[1] = true;
+                }
+                parts.push((vec![k], [begins, false]));
+            }
+        }
+    }
+    if closed && parts.first().is_some_and(|part| part.1[0]) {
+        parts.last_mut().into_iter().for_each(|last| last.1[1] = true);
+    }
+    parts
 }

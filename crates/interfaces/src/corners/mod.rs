@@ -16,7 +16,7 @@ pub use local::Obstacle;
 pub(crate) use local::{Local, LocalSolution, Monomial, Scales, value_and_gradient};
 pub(crate) use rims::rims;
 
-use crate::{BoundaryData, Condition, InterfaceJump, Material, Problem};
+use crate::{BoundaryData, Condition, InterfaceLaw, Material, Problem};
 
 /// Samples on a spacing of the boundary, between which its conditions change once at most.
 const SAMPLES: f64 = 4.0;
@@ -62,8 +62,8 @@ pub struct CornerData<'a, const D: usize> {
     pub materials: &'a [Material<D>],
     /// The boundary conditions.
     pub boundary: &'a dyn BoundaryData<D>,
-    /// Prescribed jumps.
-    pub jumps: &'a [InterfaceJump<D>],
+    /// Laws of the interfaces at which something jumps.
+    pub laws: &'a [InterfaceLaw<D>],
     /// A length on which conditions change once at most.
     pub spacing: f64,
 }
@@ -76,9 +76,9 @@ impl<const D: usize> std::fmt::Debug for CornerData<'_, D> {
 
 impl<'a, const D: usize> From<&Problem<'a, D>> for CornerData<'a, D> {
     fn from(problem: &Problem<'a, D>) -> Self {
-        let Problem { domain, regions, materials, boundary, jumps, .. } = *problem;
+        let Problem { domain, regions, materials, boundary, laws, .. } = *problem;
         let spacing = problem.cloud.spacing().iter().fold(f64::INFINITY, |a, &b| a.min(b));
-        Self { domain, regions, materials, boundary, jumps, spacing }
+        Self { domain, regions, materials, boundary, laws, spacing }
     }
 }
 

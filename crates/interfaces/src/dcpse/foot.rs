@@ -2,7 +2,7 @@
 
 use meshless_geometry::Projection;
 
-use crate::{Field, InterfaceJump, Material, Problem};
+use crate::{Field, InterfaceLaw, Material, Problem};
 
 /// Step of central differences for fields that know no gradient, relative to the spacing.
 const GRADIENT_STEP: f64 = 1e-3;
@@ -77,10 +77,10 @@ pub(super) fn jump<const D: usize>(
 ) -> LocalJump<D> {
     let (x, h) = (&foot.point, foot.spacing);
     let mut local = LocalJump { value: 0.0, gradient: [0.0; D], flux: 0.0, rate: 0.0 };
-    if let Some((InterfaceJump { value: Some(rate), .. }, sign)) = problem.jump_rate_between(from, to) {
+    if let Some((InterfaceLaw { value: Some(rate), .. }, sign)) = problem.law_rate_between(from, to) {
         local.rate = sign * rate.at(x) * h * h / scale;
     }
-    let Some((jump, sign)) = problem.jump_between(from, to) else { return local };
+    let Some((jump, sign)) = problem.law_between(from, to) else { return local };
     if let Some(value) = &jump.value {
         local.value = sign * value.at(x);
         local.gradient = gradient(value, x, h).map(|g| sign * g * h);

@@ -2,13 +2,18 @@
 //!
 //! Rows are integrated over the cell, `-sum_j |Gamma_ij| eta_ij (u_j - u_i) / d_ij = |Omega_i| f_i + boundary fluxes`,
 //! and not divided by its volume as in (20): so the part of the matrix that couples two conservative nodes is symmetric.
+//!
+//! With a velocity, fluxes are those of Scharfetter and Gummel (D. L. Scharfetter, H. K. Gummel, IEEE Trans. Electron Devices 16, 1969): of the
+//! solution of the equation along the way between two nodes. `F_ij = t (B(-P) u_i - B(P) u_j)` with `P = |Gamma_ij| v_n / t` and
+//! `B(x) = x / (exp(x) - 1)` is antisymmetric; less what the velocity carries of `u_i`, as the equation has `v . grad u` and not
+//! `div(v u)`, `t B(P) (u_i - u_j)` is left: the maximum principle holds at every Péclet number.
 
 use meshless_cells::{Cell, CellError, CellFace, CellScratch, Container, Cut, FaceKind, Plane, voronoi_cell};
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
-use crate::problem::Condition;
-use crate::{MethodError, Problem};
+use crate::equation::Contact;
+use crate::{Condition, MethodError, Problem};
 
 /// By how much the search for the neighbours that close a cell is widened, at least: a cell that is open reports little
 /// more than what has been searched.
@@ -18,6 +23,9 @@ const SEARCH_GROWTH: f64 = 1.3;
 /// Voronoi vertex, and its flux would be noise.
 pub(super) const NEGLIGIBLE_FACE: f64 = 1e-12;
 
+/// Least cosine between the way from node to node and the normal of an interface by which the area of a face is told from it.
+const LEAST_SEEN: f64 = 0.2;
+
 /// The balance of one cell.
 #[derive(Debug, Clone)]
 pub(super) struct CellRow {
@@ -26,6 +34,20 @@ pub(super) struct CellRow {
     pub(super) row_sum: f64,
     pub(super) rhs: f64,
     pub(super) volume: f64,
+    /// The integral of the capacity.
+    pub(super) capacity: f64,
+}
+
+/// What a face says of the nodes on its sides: `q = conducts (u_i / K_i - u_j / K_j) - given` leaves by conduction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crossing {
+    pub(super) conducts: f64,
+    /// The partition coefficients of both sides.
+    pub(super) partition: [f64; 2],
+    /// What the law of an interface adds.
+    pub(super) given: f64,
+    /// What the row of the node has in place of `conducts`, and of `given`: with what the velocity carries.
+    pub(super) in_row: [f64; 2],
 }
 
 /// Builds the cells and their balances.
@@ -123,63 +145,110 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     /// The balance over the cell of node i.
     pub(super) fn row(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<CellRow, MethodError> {
         let cell = self.cell(i, scratch)?;
+        let parts = self.parts(i, &cell);
         let mut row = CellRow {
             entries: Vec::with_capacity(cell.faces.len()),
-            row_sum: 0.0,
-            rhs: self.source(i, &cell),
+            row_sum: parts.iter().map(|part| part.reaction).sum(),
+            rhs: parts.iter().map(|part| part.source).sum(),
             volume: cell.volume,
+            capacity: parts.iter().map(|part| part.capacity).sum(),
         };
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
         for face in cell.faces.iter().filter(|f| f.area > negligible) {
             match face.kind {
-                FaceKind::Neighbor(j) => self.inner_face(i, j, face, &mut row),
+                FaceKind::Neighbor(j) => {
+                    let Crossing { partition: [own, other], in_row: [conducts, given], .. } =
+                        self.crossing(i, j, face);
+                    row.entries.push((j, conducts / other));
+                    if own != other {
+                        row.row_sum += conducts * (1.0 / own - 1.0 / other);
+                    }
+                    row.rhs += given;
+                }
                 FaceKind::Boundary(id) => self.boundary_face(i, FaceId(id), face, &mut row)?,
             }
         }
-        Ok(row)
+        match row.entries.iter().map(|(_, t)| *t).chain([row.row_sum, row.rhs]).all(f64::is_finite) {
+            true => Ok(row),
+            false => {
+                let x = self.problem.cloud.points()[i];
+                let what = format!(
+                    "the balance of the cell at {x:?} is not finite: a velocity, a reaction, or the resistance or a jump of an interface \
+                     is no number near there"
+                );
+                Err(MethodError::InvalidProblem { what })
+            }
+        }
     }
 
-    /// Flux to a neighbour by the harmonic mean of the diffusivities, (20), with prescribed jumps at the middle.
+    /// Flux to a neighbour by the harmonic mean of the diffusivities, (20), with the law of an interface at the middle.
     ///
-    /// With `q` the flux towards j on the near side of an interface at the middle, `q + b` that on the far side and
-    /// `a` the jump of u, elimination of the values there leaves `q = H/d (u_j - u_i - a) - b eta_i/(eta_i + eta_j)`.
-    pub(super) fn inner_face(&self, i: usize, j: u32, face: &CellFace<D>, row: &mut CellRow) {
+    /// With `q_i` the flux towards j on the near side, `q_j = q_i + b` that on the far side, `r = d / (2 eta)` the resistance of each half of
+    /// the way and the law `(u_j - q_j r_j) / K_j - (u_i + q_i r_i) / K_i = a + R q`, elimination of the values at the middle leaves
+    /// `q_i = (u_j / K_j - u_i / K_i - a - b (r_j / K_j + R')) / (r_i / K_i + r_j / K_j + R)`, in which `R' = R` if the q of the law is
+    /// that of the far side, and 0 else.
+    pub(super) fn crossing(&self, i: usize, j: u32, face: &CellFace<D>) -> Crossing {
         let problem = self.problem;
         let points = problem.cloud.points();
         let (here, there) = (problem.eta[i], problem.eta[j as usize]);
         let (from, to) = (points[i], points[j as usize]);
         let distance = (0..D).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
-        let transmissibility = face.area * harmonic_mean(here, there) / distance;
-        row.entries.push((j, transmissibility));
-        let labels = (problem.labels[i], problem.labels[j as usize]);
-        let Some((jump, sign)) =
-            (labels.0 != labels.1).then(|| problem.jump_between(labels.0, labels.1)).flatten()
+        let direction: [f64; D] = std::array::from_fn(|k| (to[k] - from[k]) / distance);
+        let conducts = face.area * harmonic_mean(here, there) / distance;
+        let labels = [i, j as usize].map(|k| problem.labels[k]);
+        let carries = face.area * self.velocity(labels, &face.centroid, &direction);
+        let joined = |given: f64| {
+            let in_row = [conducts * bernoulli(carries / conducts), given];
+            Crossing { conducts, partition: [1.0; 2], given, in_row }
+        };
+        let Some((law, sign)) =
+            (labels[0] != labels[1]).then(|| problem.law_between(labels[0], labels[1])).flatten()
         else {
-            return;
+            return joined(0.0);
         };
         let middle: [f64; D] = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
-        let direction: [f64; D] = std::array::from_fn(|k| (to[k] - from[k]) / distance);
         let reach = problem.supports.radius[i];
         // Off the interface by more than the support there is nothing to project on: the middle itself serves.
         let (foot, normal) = match problem.regions.project_within(
             problem.domain,
-            jump.between[0],
-            jump.between[1],
+            law.between[0],
+            law.between[1],
             &middle,
             reach,
         ) {
             Ok(projection) => (projection.point, projection.normal),
             Err(_) => (middle, direction.map(|x| sign * x)),
         };
-        if let Some(value) = &jump.value {
-            row.rhs -= transmissibility * sign * value.at(&foot);
+        let Contact { value, flux, resistance, of_here, partition } = law.at(sign, &foot);
+        // The staircase of cell faces has the area of the interface only as seen along its normal. Both sides lose
+        // their part of the surface source, so its sign is that of going from A to B on either; and a film lets through what its own area does.
+        let seen = sign * (0..D).map(|k| normal[k] * direction[k]).sum::<f64>();
+        let of_flux = face.area * flux * seen * here / (here + there);
+        if !law.is_imperfect() && law.value.is_none() {
+            return joined(-of_flux);
         }
-        if let Some(flux) = &jump.flux {
-            // The staircase of cell faces has the area of the interface only as seen along its normal. Both sides lose
-            // their part of the surface source, so its sign is that of going from A to B on either.
-            let seen = sign * (0..D).map(|k| normal[k] * direction[k]).sum::<f64>();
-            row.rhs -= face.area * flux.at(&foot) * seen * here / (here + there);
+        let half = 0.5 * distance;
+        let [near, far] = [half / (here * partition[0]), half / (there * partition[1])];
+        let (conducts, given) = if law.is_imperfect() {
+            let film = resistance / seen.max(LEAST_SEEN);
+            let conducts = face.area / (near + far + film);
+            (conducts, -conducts * (value + flux * seen * (far + if of_here { 0.0 } else { film })))
+        } else {
+            (conducts, -conducts * value - of_flux)
+        };
+        // The velocity carries u as it is on the near side: what jumps beyond it is nothing to the equation of the node.
+        let carried = bernoulli(2.0 * carries * half / (face.area * here));
+        Crossing { conducts, partition, given, in_row: [carried * conducts, carried * given] }
+    }
+
+    /// The velocity through a face between two regions: none through the wall of one in which nothing moves.
+    fn velocity(&self, labels: [u16; 2], at: &[f64; D], direction: &[f64; D]) -> f64 {
+        let [here, there] = labels.map(|label| &self.problem.materials[label as usize]);
+        if here.velocity.is_none() || there.velocity.is_none() {
+            return 0.0;
         }
+        let (a, b) = (here.velocity_at(at), there.velocity_at(at));
+        (0..D).map(|k| 0.5 * (a[k] + b[k]) * direction[k]).sum()
     }
 
     /// Flux through a piece of the boundary, (21).
@@ -211,9 +280,12 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             Condition::Dirichlet(_) => {
                 // A piece through the node itself belongs to a node whose value is prescribed.
                 let (Condition::Dirichlet(value), true) = (at(&foot)?, height != 0.0) else { return Ok(()) };
-                let transmissibility = face.area * eta / height.abs();
-                row.row_sum += transmissibility;
-                row.rhs += transmissibility * value;
+                let conducts = face.area * eta / height.abs();
+                let label = problem.labels[i];
+                let carries = face.area * self.velocity([label; 2], &face.centroid, &face.normal);
+                let conducts = conducts * bernoulli(carries / conducts);
+                row.row_sum += conducts;
+                row.rhs += conducts * value;
             }
             Condition::Robin { .. } => {
                 let (a, g) = to_flux(&at(&foot)?)?;
@@ -235,9 +307,26 @@ fn harmonic_mean(a: f64, b: f64) -> f64 {
     2.0 * small / (1.0 + small / large)
 }
 
+/// `x / (exp(x) - 1)`.
+pub(super) fn bernoulli(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x / x.exp_m1() }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::harmonic_mean;
+    use super::{bernoulli, harmonic_mean};
+
+    #[test]
+    fn the_bernoulli_function_is_finite_everywhere() {
+        assert_eq!(bernoulli(0.0), 1.0);
+        assert!((bernoulli(1e-9) - 1.0).abs() < 1e-8);
+        // What goes with the stream less what goes against it is the stream.
+        for x in [1e-3, 1.0, 30.0, 700.0] {
+            assert!((bernoulli(-x) - bernoulli(x) - x).abs() < 1e-12 * x.max(1.0), "{x}");
+        }
+        assert_eq!(bernoulli(1e4), 0.0);
+        assert_eq!(bernoulli(-1e4), 1e4);
+    }
 
     #[test]
     fn the_harmonic_mean_is_symmetric_and_keeps_to_the_smaller() {

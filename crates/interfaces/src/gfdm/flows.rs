@@ -6,10 +6,8 @@
 use meshless_cells::FaceKind;
 use meshless_geometry::FaceId;
 
-use super::conservative::{BalanceScratch, CellBalance, CellRow, NEGLIGIBLE_FACE};
-use super::source::CellPart;
-use crate::problem::Condition;
-use crate::{MethodError, Problem, SystemSolution, parallel};
+use super::conservative::{BalanceScratch, CellBalance, CellRow, Crossing, NEGLIGIBLE_FACE};
+use crate::{Condition, MethodError, Problem, SystemSolution, parallel};
 
 /// What enters through a piece of the boundary.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,10 +29,25 @@ pub struct CellWall<const D: usize> {
 pub struct CellSeam {
     /// From which region, and into which.
     pub between: [u16; 2],
-    /// What leaves.
+    /// What leaves by conduction.
     pub flux: f64,
     /// Length or area of the face; 1 on the line.
     pub area: f64,
+}
+
+/// What the part of a cell in one region holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellContent {
+    /// The region.
+    pub region: u16,
+    /// The region of the node whose cell it is.
+    pub cell: u16,
+    /// What arises: the integral of the source.
+    pub arises: f64,
+    /// What is stored, by unit of time; zero in steady problems.
+    pub stored: f64,
+    /// What the reaction takes up, and what the velocity carries away: the integrals of `reaction u` and of `velocity . grad u`.
+    pub taken: [f64; 2],
 }
 
 /// The fluxes of a solution, and what the cells hold that they are of.
@@ -44,8 +57,8 @@ pub struct CellFlows<const D: usize> {
     pub walls: Vec<CellWall<D>>,
     /// Between regions, each pair of cells from either side.
     pub seams: Vec<CellSeam>,
-    /// The parts of all cells by regions, each with the rate of change `du/dt` at its node; zero in steady problems.
-    pub parts: Vec<(CellPart, f64)>,
+    /// The parts of all cells by regions.
+    pub parts: Vec<CellContent>,
 }
 
 /// Those of all cells.
@@ -81,20 +94,33 @@ impl<const D: usize> CellBalance<'_, D> {
         let (problem, u) = (self.problem, &solution.u);
         let cell = self.cell(i, scratch)?;
         let rate = solution.rates.as_ref().map_or(0.0, |rates| rates[i]);
-        let parts: Vec<(CellPart, f64)> = self.parts(i, &cell).into_iter().map(|part| (part, rate)).collect();
-        let mut lacks: f64 = parts.iter().map(|(part, rate)| rate * part.volume - part.source).sum();
+        let content = |part: super::source::CellPart| CellContent {
+            region: part.region,
+            cell: part.cell,
+            arises: part.source,
+            stored: rate * part.capacity,
+            taken: [part.reaction * u[i], 0.0],
+        };
+        let parts: Vec<CellContent> = self.parts(i, &cell).into_iter().map(content).collect();
+        let mut lacks: f64 = parts.iter().map(|part| part.stored + part.taken[0] - part.arises).sum();
+        let mut carried = 0.0;
         let mut flows = CellFlows { parts, ..CellFlows::default() };
         // Pieces of the boundary through which the reaction enters.
         let mut held: Vec<usize> = Vec::new();
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
         for face in cell.faces.iter().filter(|f| f.area > negligible) {
-            let mut row = CellRow { entries: Vec::new(), row_sum: 0.0, rhs: 0.0, volume: 0.0 };
+            let mut row = CellRow { entries: Vec::new(), row_sum: 0.0, rhs: 0.0, volume: 0.0, capacity: 0.0 };
             match face.kind {
                 FaceKind::Neighbor(j) => {
-                    self.inner_face(i, j, face, &mut row);
-                    let across: f64 = row.entries.iter().map(|(j, t)| t * (u[i] - u[*j as usize])).sum();
-                    let flux = across - row.rhs;
-                    lacks += flux;
+                    let Crossing { conducts, partition, given, in_row } = self.crossing(i, j, face);
+                    let drop = match partition[0] == partition[1] {
+                        true => (u[i] - u[j as usize]) / partition[0],
+                        false => u[i] / partition[0] - u[j as usize] / partition[1],
+                    };
+                    let leaves = in_row[0] * drop - in_row[1];
+                    let flux = conducts * drop - given;
+                    lacks += leaves;
+                    carried += leaves - flux;
                     let between = [i, j as usize].map(|k| problem.labels[k]);
                     if between[0] != between[1] {
                         flows.seams.push(CellSeam { between, flux, area: face.area });
@@ -118,6 +144,9 @@ impl<const D: usize> CellBalance<'_, D> {
         }
         let area: f64 = held.iter().map(|&k| flows.walls[k].area).sum();
         held.iter().for_each(|&k| flows.walls[k].flux = lacks * flows.walls[k].area / area);
+        if let Some(own) = flows.parts.iter_mut().find(|part| part.region == part.cell) {
+            own.taken[1] = carried;
+        }
         Ok(flows)
     }
 }

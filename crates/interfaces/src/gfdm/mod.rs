@@ -22,9 +22,8 @@ use crate::parallel;
 use crate::{MethodError, Problem, SystemSolution};
 use boundary::BoundaryRow;
 use conservative::{CellBalance, CellRow};
-pub use flows::{CellFlows, CellSeam, CellWall};
+pub use flows::{CellContent, CellFlows, CellSeam, CellWall};
 pub use params::{GfdmParams, Selection, StrongParams};
-pub use source::CellPart;
 pub(crate) use strong::add_correction;
 
 /// A generalised finite difference method.
@@ -54,7 +53,7 @@ impl<const D: usize> Method<D> for Gfdm {
 
 impl Gfdm {
     fn check<const D: usize>(&self, problem: &Problem<'_, D>) -> Result<(), MethodError> {
-        if self.params.selection == Selection::None && !problem.jumps.is_empty() {
+        if self.params.selection == Selection::None && !problem.laws.is_empty() {
             return Err(MethodError::Unsupported {
                 method: "the classical method",
                 what: "prescribe a jump of u or of the flux",
@@ -133,6 +132,7 @@ impl Parts {
                     let measure = strong_measure(problem, i);
                     let (neighbors, row) = strong.row(problem, i);
                     neighbors.iter().zip(row).for_each(|(&j, c)| out.push(j as usize, -measure * c));
+                    out.add_to_row_sum(measure * problem.reaction(i));
                 }
             }
             RowKind::StrongBoundary => {
@@ -155,8 +155,15 @@ impl Parts {
         let volumes = (0..self.kinds.len())
             .map(|i| self.cells[i].as_ref().map_or_else(|| strong_measure(problem, i), |row| row.volume))
             .collect();
+        let capacity = |i: usize| match &self.cells[i] {
+            Some(row) => row.capacity,
+            None => strong_measure(problem, i) * problem.capacity(i),
+        };
+        let capacities =
+            problem.has_capacities().then(|| (0..self.kinds.len()).map(capacity).collect::<Vec<_>>());
         let Self { kinds, counts, stencil_seconds, .. } = self;
-        Ok(Discretization::of_nodes((rows, rhs), volumes, kinds, counts, stencil_seconds))
+        let rows = Discretization::of_nodes((rows, rhs), volumes, kinds, counts, stencil_seconds);
+        Ok(Discretization { capacities, ..rows })
     }
 }
 

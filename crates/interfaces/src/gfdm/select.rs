@@ -59,10 +59,10 @@ pub(super) fn conservative_nodes<const D: usize>(
 /// Whether a stencil at i over `neighbors` reaches over an interface where u or the flux jumps: stencils do not know of
 /// such jumps.
 pub(super) fn crosses_a_jump<const D: usize>(problem: &Problem<'_, D>, i: usize, neighbors: &[u32]) -> bool {
-    !problem.jumps.is_empty()
+    !problem.laws.is_empty()
         && neighbors.iter().any(|&j| {
             let labels = (problem.labels[i], problem.labels[j as usize]);
-            labels.0 != labels.1 && problem.jump_between(labels.0, labels.1).is_some()
+            labels.0 != labels.1 && problem.law_between(labels.0, labels.1).is_some()
         })
 }
 

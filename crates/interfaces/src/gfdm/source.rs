@@ -1,4 +1,5 @@
-//! What arises in the cell of a node: a cell that an interface cuts has the sources of both sides, each as it is at the node.
+//! What the cell of a node holds: a cell that an interface cuts has the sources, capacities and reactions of both sides, each as it is at the
+//! node.
 
 use meshless_cells::Cell;
 
@@ -14,20 +15,24 @@ const PLACES: u32 = 6;
 /// How often a part of a line is halved to find where the region changes.
 const HALVINGS: u32 = 30;
 
-/// Difference of the sources of both sides, over their size, up to which they are one.
+/// Difference of the data of both sides, over their size, up to which they are one.
 const SAME: f64 = 1e-12;
 
 /// The part of a cell that is in one region.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CellPart {
+pub(super) struct CellPart {
     /// The region.
-    pub region: u16,
+    pub(super) region: u16,
     /// The region of the node whose cell it is.
-    pub cell: u16,
+    pub(super) cell: u16,
     /// The integral of the source.
-    pub source: f64,
+    pub(super) source: f64,
     /// Length, area or volume.
-    pub volume: f64,
+    pub(super) volume: f64,
+    /// The integral of the capacity.
+    pub(super) capacity: f64,
+    /// The integral of the factor of u.
+    pub(super) reaction: f64,
 }
 
 /// A part of a straight line.
@@ -65,45 +70,45 @@ fn basis<const D: usize>(direction: [f64; D]) -> Vec<[f64; D]> {
 }
 
 impl<const D: usize> CellBalance<'_, D> {
-    /// The integral of the source over the cell of node i.
-    pub(super) fn source(&self, i: usize, cell: &Cell<D>) -> f64 {
-        self.parts(i, cell).iter().map(|part| part.source).sum()
-    }
-
-    /// The cell of node i by regions; all of it is of one where sources are the same on both sides of what cuts it.
+    /// The cell of node i by regions; all of it is of one where the data are the same on both sides of what cuts it.
     pub(super) fn parts(&self, i: usize, cell: &Cell<D>) -> Vec<CellPart> {
         let problem = self.problem;
         let own = problem.labels[i];
-        let nodal = problem.source.map_or(0.0, |f| f[i]);
-        let whole = CellPart { region: own, cell: own, source: cell.volume * nodal, volume: cell.volume };
+        let x = &problem.cloud.points()[i];
+        let content = |region: u16, source: f64, volume: f64| {
+            let [_, capacity, reaction] = self.data_of(region, x);
+            CellPart {
+                region,
+                cell: own,
+                source: volume * source,
+                volume,
+                capacity: volume * capacity,
+                reaction: volume * reaction,
+            }
+        };
+        let whole = content(own, problem.source.map_or(0.0, |f| f[i]), cell.volume);
         // Where regions are known by labels alone, nothing is known between the nodes.
-        let is_cut = problem.source.is_some()
-            && problem.regions.len() == problem.materials.len()
+        let is_cut = problem.regions.len() == problem.materials.len()
             && cell.neighbors().any(|(j, _)| self.changes(i, j as usize));
         if !is_cut {
             return vec![whole];
         }
-        let x = &problem.cloud.points()[i];
-        let mut found: Vec<CellPart> = Vec::new();
+        let mut found: Vec<(u16, f64)> = Vec::new();
         let mut length = 0.0;
         for line in self.lines(i, cell) {
             length += line.to - line.from;
-            self.along(&line, &mut |region, from, to| match found
-                .iter_mut()
-                .find(|part| part.region == region)
-            {
-                Some(part) => part.volume += to - from,
-                None => found.push(CellPart { region, cell: own, source: 0.0, volume: to - from }),
+            self.along(&line, &mut |region, from, to| match found.iter_mut().find(|part| part.0 == region) {
+                Some((_, sum)) => *sum += to - from,
+                None => found.push((region, to - from)),
             });
         }
         let weight = cell.volume / length;
-        for part in &mut found {
-            part.volume *= weight;
-            // All of a part has the source that is at the node, as it has the rate of change there.
-            part.source = self.source_of(part.region, x) * part.volume;
-        }
-        let is_known = !found.is_empty() && found.iter().all(|part| part.source.is_finite());
-        if is_known { found } else { vec![whole] }
+        // All of a part has the source that is at the node, as it has the rate of change there.
+        let part =
+            |(region, length): (u16, f64)| content(region, self.data_of(region, x)[0], weight * length);
+        let found: Vec<CellPart> = found.into_iter().map(part).collect();
+        let is_finite = |part: &CellPart| (part.source + part.capacity + part.reaction).is_finite();
+        if !found.is_empty() && found.iter().all(is_finite) { found } else { vec![whole] }
     }
 
     /// Lines through the cell of node i towards what is beyond the interface, which they cross at a large angle, at even distances.
@@ -161,18 +166,21 @@ impl<const D: usize> CellBalance<'_, D> {
         piece(region, start, line.to);
     }
 
-    fn source_of(&self, label: u16, x: &[f64; D]) -> f64 {
-        self.problem.materials[label as usize].source.as_ref().map_or(0.0, |field| field.at(x))
+    /// Source, capacity and reaction of a region at a point.
+    fn data_of(&self, label: u16, x: &[f64; D]) -> [f64; 3] {
+        let material = &self.problem.materials[label as usize];
+        let source = material.source.as_ref().map_or(0.0, |field| field.at(x));
+        [source, material.capacity_at(x), material.reaction_at(x)]
     }
 
-    /// Whether a neighbour is in a region of another source.
+    /// Whether a neighbour is in a region of other data.
     fn changes(&self, i: usize, j: usize) -> bool {
         let labels = [i, j].map(|k| self.problem.labels[k]);
         labels[0] != labels[1] && {
-            let [here, there] = labels.map(|label| self.source_of(label, &self.problem.cloud.points()[i]));
-            let is_same = (here - there).abs() <= SAME * here.abs().max(there.abs());
+            let [here, there] = labels.map(|label| self.data_of(label, &self.problem.cloud.points()[i]));
             // What is no number on the other side is another source, too.
-            !is_same
+            let is_same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs().max(b.abs());
+            !here.iter().zip(&there).all(is_same)
         }
     }
 }

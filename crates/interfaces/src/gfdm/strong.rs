@@ -8,7 +8,7 @@ use crate::local::{NodeFit, NodeScratch};
 use crate::operator_rows::OperatorRows;
 use crate::{MethodError, Problem};
 
-/// Coefficients `gamma_ij` of `div(eta grad u)` at the nodes for which `wanted` holds; `gamma_ii = -sum gamma_ij`.
+/// Coefficients `gamma_ij` of `div(eta grad u) - velocity . grad u` at the nodes for which `wanted` holds; `gamma_ii = -sum gamma_ij`.
 pub(super) fn compute<const D: usize>(
     problem: &Problem<'_, D>,
     params: &StrongParams,
@@ -63,7 +63,7 @@ impl<'a, const D: usize> StrongOperator<'a, D> {
     ) -> Result<(), MethodError> {
         let located = |source| MethodError::stencil(i, &self.problem.cloud.points()[i], source);
         self.fit.factor(self.problem, i, neighbors, &mut scratch.node).map_err(located)?;
-        let functional = match &self.diffusivity {
+        let mut functional = match &self.diffusivity {
             Some(diffusivity) if diffusivity.varies(i, neighbors) => {
                 for k in 0..D {
                     scratch.partials[k].resize(neighbors.len(), 0.0);
@@ -77,6 +77,10 @@ impl<'a, const D: usize> StrongOperator<'a, D> {
             Some(diffusivity) => Functional::Diffusion { eta: diffusivity.value(i), gradient: [0.0; D] },
             None => Functional::Diffusion { eta: self.problem.eta[i], gradient: [0.0; D] },
         };
+        if let Functional::Diffusion { gradient, .. } = &mut functional {
+            let velocity = self.problem.velocity(i);
+            gradient.iter_mut().zip(velocity).for_each(|(g, v)| *g -= v);
+        }
         self.fit.coefficients(&functional, &mut scratch.node, out).map_err(located)?;
         if self.correction {
             scratch.correction.resize(neighbors.len(), 0.0);

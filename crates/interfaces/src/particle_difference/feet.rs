@@ -78,5 +78,5 @@ fn feet_of<const D: usize>(problem: &Problem<'_, D>, i: usize) -> Option<Vec<Foo
 pub(super) fn may_jump<const D: usize>(problem: &Problem<'_, D>, a: u16, b: u16) -> bool {
     let eta = |label: u16| problem.materials[label as usize].diffusivity.as_constant();
     let same = matches!((eta(a), eta(b)), (Some(a), Some(b)) if a == b);
-    !same || problem.jump_between(a, b).is_some()
+    !same || problem.law_between(a, b).is_some()
 }

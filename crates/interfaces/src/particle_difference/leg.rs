@@ -1,9 +1,9 @@
 //! An interface near a node, with everything that the conditions across it need.
 
+use crate::InterfaceLaw;
 use crate::particle_difference::feet::Foot;
 use crate::particle_difference::frame::Frame;
 use crate::particle_difference::{ParticleDifferenceParams, Wedge};
-use crate::problem::InterfaceJump;
 use crate::{MethodError, Problem};
 
 /// Step of difference quotients where no derivative is given, over the spacing: their error is about 1e-8 of the
@@ -32,7 +32,7 @@ pub(super) struct Leg<'a, const D: usize> {
     /// The jump of the second derivative across.
     pub(super) bend: Bend<D>,
     /// What is prescribed, and the sign of its value from this side.
-    jump: Option<(&'a InterfaceJump<D>, f64)>,
+    jump: Option<(&'a InterfaceLaw<D>, f64)>,
     /// Step of difference quotients.
     step: f64,
 }
@@ -61,7 +61,7 @@ impl<'a, const D: usize> Leg<'a, D> {
             );
             return Err(MethodError::InvalidProblem { what });
         }
-        let jump = problem.jump_between(own, foot.beyond);
+        let jump = problem.law_between(own, foot.beyond);
         let step = GRADIENT_STEP * problem.cloud.spacing()[i];
         let bend = Bend { given: 0.0, by_gradient: [0.0; D] };
         let mut leg = Self { foot, ratio: eta[0] / eta[1], eta_beyond: eta[1], bend, jump, step };
@@ -116,7 +116,7 @@ impl<'a, const D: usize> Leg<'a, D> {
     /// `lap_s a + (grad eta_O / eta_O) . grad_s a` of the jump a of the value.
     fn value_bend(&self, problem: &Problem<'a, D>, drift: &[f64; D]) -> f64 {
         let at = &self.foot.at;
-        let Some((InterfaceJump { value: Some(value), between, .. }, sign)) = self.jump else { return 0.0 };
+        let Some((InterfaceLaw { value: Some(value), between, .. }, sign)) = self.jump else { return 0.0 };
         if value.as_constant().is_some() {
             return 0.0;
         }
@@ -178,7 +178,7 @@ impl<'a, const D: usize> Leg<'a, D> {
     /// By how much u is larger beyond, at a point of the interface.
     pub(super) fn value_at(&self, point: &[f64; D]) -> f64 {
         match self.jump {
-            Some((InterfaceJump { value: Some(value), .. }, sign)) => sign * value.at(point),
+            Some((InterfaceLaw { value: Some(value), .. }, sign)) => sign * value.at(point),
             _ => 0.0,
         }
     }

@@ -1,8 +1,8 @@
-//! Polynomials that solve the equation where the diffusivity varies, up to the degree of the fit (quasi-Trefftz functions).
+//! Polynomials that solve the equation where it is more than the Laplacian, up to the degree of the fit (quasi-Trefftz functions).
 //!
-//! In `z = (x - x_i)/R` the equation is `lap Q + b . grad Q = g` with `b = grad ln eta`. To each harmonic polynomial h belongs
-//! one solution `Q = h + P` of the homogeneous equation, P the polynomial of least norm whose Laplacian is
-//! `y = -b . grad (h + P)`, as far as polynomials of the degree of the fit can say so; and one P belongs to each source.
+//! In `z = (x - x_i)/R` the equation is `lap Q + b . grad Q - c Q = g` with `b = grad ln eta - R v / eta` and `c = R^2 r / eta`, of a velocity v and a
+//! reaction r. To each harmonic polynomial h belongs one solution `Q = h + P` of the homogeneous equation, P the polynomial of least norm
+//! whose Laplacian is `y = c (h + P) - b . grad (h + P)`, as far as polynomials of the degree of the fit can say so; and one P belongs to each source.
 //! With samples on the unit ball this is one small linear system for y a stencil, with a right-hand side for each function.
 
 use meshless_stencils::Qr;
@@ -11,7 +11,7 @@ use super::basis::{Basis, Jet};
 use super::dense::{self, dot};
 use super::particular::{inverse_laplacian, pseudo_inverse, samples};
 
-/// Condition of the system beyond which the diffusivity varies too much over a stencil for its functions to be found.
+/// Condition of the system beyond which the equation is too far from the Laplacian over a stencil for its functions to be found.
 const LARGEST_CONDITION: f64 = 1e4;
 
 /// How much a sample of `ln eta` may differ from the polynomial that stands for it: more is a jump or a singularity.
@@ -37,6 +37,17 @@ pub(super) struct Adapted<const D: usize> {
     slopes: [Vec<f64>; D],
     /// A row a sample: derivatives of P for the monomials of y, then those of the harmonic polynomials.
     derivatives: [Vec<f64>; D],
+    /// The values of the same.
+    undifferentiated: Vec<f64>,
+}
+
+/// The terms of lower order in the units of a stencil, at the samples; empty where there are none.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LowerTerms<const D: usize> {
+    /// `R v / eta`, a list for each axis.
+    pub(super) velocity: Option<[Vec<f64>; D]>,
+    /// `R^2 r / eta`.
+    pub(super) reaction: Option<Vec<f64>>,
 }
 
 /// Memory of one thread.
@@ -65,6 +76,7 @@ impl<const D: usize> Adapted<D> {
         let (count, functions, n) = (right.len(), harmonic.len(), samples.len());
         let width = count + functions;
         let mut derivatives: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; n * width]);
+        let mut undifferentiated = vec![0.0; n * width];
         let (mut monomials, mut harmonics) = (Jet::default(), Jet::default());
         for (k, z) in samples.iter().enumerate() {
             basis.evaluate(z, &mut monomials);
@@ -76,20 +88,36 @@ impl<const D: usize> Adapted<D> {
                 }
                 row[count..].iter_mut().zip(&harmonics.gradients).for_each(|(entry, g)| *entry = g[axis]);
             }
+            let row = &mut undifferentiated[k * width..(k + 1) * width];
+            for (value, factors) in monomials.values.iter().zip(inverse.chunks_exact(count)) {
+                row.iter_mut().zip(factors).for_each(|(entry, factor)| *entry += value * factor);
+            }
+            row[count..].copy_from_slice(&harmonics.values);
         }
         let through = Basis::complete(degree + 1);
         let logarithm = pseudo_inverse(&through, &samples);
         let (values, slopes) = tables(&through, &samples);
         let fit = pseudo_inverse(&right, &samples);
-        Self { basis, functions, fit, inverse, logarithm, values, slopes, derivatives, samples }
+        Self {
+            basis,
+            functions,
+            fit,
+            inverse,
+            logarithm,
+            values,
+            slopes,
+            derivatives,
+            undifferentiated,
+            samples,
+        }
     }
 
-    /// The functions of a stencil with these diffusivities at the samples, and the particular parts of `sources` there: a row a
+    /// The functions of a stencil with these diffusivities and terms of lower order at the samples, and the particular parts of `sources` there: a row a
     /// monomial of P with its coefficient in each function, then one after the other the coefficients for the sources. False where the
     /// diffusivity is no smooth positive function.
     pub(super) fn solve(
         &self,
-        eta: &[f64],
+        (eta, lower): (&[f64], &LowerTerms<D>),
         sources: &[&[f64]],
         scratch: &mut Scratch,
         out: &mut Vec<f64>,
@@ -97,6 +125,7 @@ impl<const D: usize> Adapted<D> {
         if !eta.iter().all(|eta| eta.is_finite() && *eta > 0.0) || !self.convect(eta, scratch) {
             return false;
         }
+        self.add_lower_terms(lower, &mut scratch.convected);
         let (n, width) = (self.samples.len(), self.functions + self.fit.len() / self.samples.len());
         let count = width - self.functions;
         let Scratch { qr, convected, fitted, right, solved, y, lacks, .. } = scratch;
@@ -158,6 +187,25 @@ impl<const D: usize> Adapted<D> {
     }
 }
 
+impl<const D: usize> Adapted<D> {
+    /// Adds `-v . grad - r` of the same to `b . grad`.
+    fn add_lower_terms(&self, lower: &LowerTerms<D>, convected: &mut [f64]) {
+        let width = convected.len() / self.samples.len();
+        let mut subtract = |factors: &[f64], table: &[f64]| {
+            let rows = convected.chunks_exact_mut(width).zip(table.chunks_exact(width));
+            for ((row, entries), factor) in rows.zip(factors) {
+                row.iter_mut().zip(entries).for_each(|(sum, entry)| *sum -= factor * entry);
+            }
+        };
+        for (velocity, derivatives) in lower.velocity.iter().flatten().zip(&self.derivatives) {
+            subtract(velocity, derivatives);
+        }
+        if let Some(reaction) = &lower.reaction {
+            subtract(reaction, &self.undifferentiated);
+        }
+    }
+}
+
 /// A row a sample: values and derivatives of the polynomials there.
 fn tables<const D: usize>(basis: &Basis<D>, samples: &[[f64; D]]) -> (Vec<f64>, [Vec<f64>; D]) {
     let mut values = Vec::new();
@@ -185,7 +233,8 @@ mod tests {
         let eta: Vec<f64> = adapted.samples.iter().map(|z| along(z).exp()).collect();
         let source: Vec<f64> = adapted.samples.iter().map(|z| 1.0 - z[0]).collect();
         let mut coefficients = Vec::new();
-        assert!(adapted.solve(&eta, &[&source], &mut Scratch::default(), &mut coefficients));
+        let lower = LowerTerms::default();
+        assert!(adapted.solve((&eta, &lower), &[&source], &mut Scratch::default(), &mut coefficients));
         let (mut own, mut jet) = (Jet::default(), Jet::default());
         harmonic.evaluate(&z, &mut own);
         adapted.basis.evaluate(&z, &mut jet);
@@ -224,12 +273,40 @@ mod tests {
         assert!(by_degree[1] < 0.1 * by_degree[0] && by_degree[2] < 0.1 * by_degree[1], "{by_degree:?}");
     }
 
+    /// A stream and a reaction: `lap Q - v . grad Q - r Q` of every function, at a point.
+    #[test]
+    fn terms_of_lower_order_are_solved_for() {
+        let left = |scale: f64, degree: usize| {
+            let harmonic = Basis::<2>::harmonic(4);
+            let adapted = Adapted::new(&harmonic, degree);
+            let n = adapted.samples.len();
+            let (v, r) = ([0.3 * scale, -0.2 * scale], 0.4 * scale);
+            let lower = LowerTerms { velocity: Some(v.map(|v| vec![v; n])), reaction: Some(vec![r; n]) };
+            let mut p = Vec::new();
+            assert!(adapted.solve((&vec![2.0; n], &lower), &[], &mut Scratch::default(), &mut p));
+            let (mut own, mut jet, z) = (Jet::default(), Jet::default(), [0.3, -0.4]);
+            harmonic.evaluate(&z, &mut own);
+            adapted.basis.evaluate(&z, &mut jet);
+            let along = |g: &[f64; 2]| v[0] * g[0] + v[1] * g[1];
+            let of = |f: usize| -> f64 {
+                let start = -along(&own.gradients[f]) - r * own.values[f];
+                p.iter().skip(f).step_by(harmonic.len()).enumerate().fold(start, |sum, (m, c)| {
+                    sum + c * (jet.laplacians[m] - along(&jet.gradients[m]) - r * jet.values[m])
+                })
+            };
+            (0..harmonic.len()).map(|f| of(f).abs()).fold(0.0, f64::max)
+        };
+        assert!(left(1.0, 4) < 1e-2 && left(0.5, 4) < 5e-3, "{:e} {:e}", left(1.0, 4), left(0.5, 4));
+        assert!(left(1.0, 8) < 0.1 * left(1.0, 4), "{:e}", left(1.0, 8));
+    }
+
     #[test]
     fn a_jump_is_not_taken_for_a_smooth_function() {
         let adapted = Adapted::new(&Basis::<2>::harmonic(4), 4);
         let eta: Vec<f64> = adapted.samples.iter().map(|z| if z[0] < 0.1 { 1.0 } else { 2.0 }).collect();
-        assert!(!adapted.solve(&eta, &[], &mut Scratch::default(), &mut Vec::new()));
+        let lower = LowerTerms::default();
+        assert!(!adapted.solve((&eta, &lower), &[], &mut Scratch::default(), &mut Vec::new()));
         let eta: Vec<f64> = adapted.samples.iter().map(|z| z[0]).collect();
-        assert!(!adapted.solve(&eta, &[], &mut Scratch::default(), &mut Vec::new()));
+        assert!(!adapted.solve((&eta, &lower), &[], &mut Scratch::default(), &mut Vec::new()));
     }
 }

@@ -4,6 +4,7 @@ use meshless_stencils::Qr;
 
 use super::basis::Jet;
 use super::maker::Maker;
+use super::operator::Operator;
 use super::parts::Parts;
 pub(super) use super::parts::Row;
 use super::stencil::{Heard, Stencil};
@@ -30,12 +31,12 @@ pub(super) struct Share {
 }
 
 /// What a row of the fit has on its right-hand side beside the value of a node: a number, what it would be for the
-/// source 1, and the constants of parts.
+/// source 1, and the constants of parts. Those of the sides of an interface with partition coefficients stand by themselves.
 #[derive(Debug, Clone, Copy, Default)]
 struct Given {
     known: f64,
     unit_source: f64,
-    share: Share,
+    shares: [Share; 2],
 }
 
 /// What a row does to the polynomial of a part at a point.
@@ -200,10 +201,10 @@ impl<const D: usize> Fit<D> {
             return false;
         }
         self.factors.clear();
-        self.factors.extend(self.given.iter().map(|&Given { known, share, .. }| {
+        self.factors.extend(self.given.iter().map(|&Given { known, shares, .. }| {
             let part = |place: usize| stencil.parts[place];
-            let of = || share.factor * constants(part(share.of), share.less.map(part));
-            known + if share.factor == 0.0 { 0.0 } else { of() }
+            let of = |share: &Share| share.factor * constants(part(share.of), share.less.map(part));
+            shares.iter().filter(|share| share.factor != 0.0).fold(known, |sum, share| sum + of(share))
         }));
         let nodes = stencil.nodes.iter().zip(&self.weights);
         self.factors.iter_mut().zip(nodes).for_each(|(row, (&j, weight))| *row += weight * value(j));
@@ -239,9 +240,8 @@ impl<const D: usize> Fit<D> {
         for (factor, given) in self.factors.iter().zip(&self.given) {
             out.known += factor * given.known;
             out.unit_source += factor * given.unit_source;
-            let share = Share { factor: factor * given.share.factor, ..given.share };
-            if share.factor != 0.0 {
-                out.add(share);
+            for share in given.shares.iter().filter(|share| share.factor != 0.0) {
+                out.add(Share { factor: factor * share.factor, ..*share });
             }
         }
         remainder
@@ -328,13 +328,15 @@ impl<const D: usize> Fit<D> {
             // The functions of a vertex are in the units of the nodes: those of softer parts are weighed instead.
             let weight = if told { weight * self.parts.loudness(part) } else { 0.0 };
             self.weights.push(weight * self.parts.omega(part));
-            let mut given = Given { share: self.share(maker, part, -weight), ..Given::default() };
+            let shares = [self.share(maker, part, -weight), Share::default()];
+            let mut given = Given { shares, ..Given::default() };
             self.put(row, part, (&z, &jet), &Row::of_value(weight), &mut given);
             self.given[row] = given;
             let (eta, scale) = (maker.problem.eta[j], self.parts.scale(part));
             if self.parts.has_rows(part) {
                 let source = maker.problem.source.map_or(0.0, |f| f[j]);
-                self.equation(maker, part, (&z, &jet), &maker.slope(j), radius, eta * scale, source);
+                let held = (stencil.parts[part], eta * scale);
+                self.equation(maker, (part, held), (&z, &jet), &maker.operator(j), radius, source);
             }
             for condition in maker.conditions(j as u32, stencil) {
                 let functional = Row {
@@ -351,7 +353,7 @@ impl<const D: usize> Fit<D> {
                     less: None,
                     factor: -factor * condition.exchange,
                 });
-                let mut given = Given { known, unit_source: 0.0, share };
+                let mut given = Given { known, unit_source: 0.0, shares: [share, Share::default()] };
                 self.put(self.given.len(), part, (&z, &jet), &functional, &mut given);
                 self.given.push(given);
             }
@@ -359,27 +361,36 @@ impl<const D: usize> Fit<D> {
         self.parts.jet = jet;
     }
 
-    /// The row `lap Q + grad ln eta . grad Q = -f / (eta s)`, times the square of the radius.
+    /// The row `lap Q + drift . grad Q - decay Q = -f / (eta s) + decay c / s` of `u = c + s Q`, times the square of the radius, for a place among the
+    /// parts of the stencil, with the part and `eta s`.
     fn equation(
         &mut self,
         maker: &Maker<'_, D>,
-        part: usize,
+        (place, (part, conductance)): (usize, (u32, f64)),
         at: (&[f64; D], &Jet<D>),
-        slope: &[f64; D],
+        operator: &Operator<D>,
         radius: f64,
-        conductance: f64,
         source: f64,
     ) {
         let strength = maker.params.equation_weight;
-        let functional =
-            Row { value: 0.0, gradient: slope.map(|s| strength * radius * s), laplacian: strength };
+        let decay = strength * radius * radius * operator.decay;
+        let functional = Row {
+            value: -decay,
+            gradient: operator.drift.map(|s| strength * radius * s),
+            laplacian: strength,
+        };
         let unit = -strength * radius * radius / conductance;
         let mut given = Given { known: unit * source, unit_source: unit, ..Given::default() };
-        self.put(self.given.len(), part, at, &functional, &mut given);
+        if decay != 0.0 {
+            let factor = decay / self.parts.scale(place);
+            given.known += factor * maker.unknowns.offset[part as usize];
+            given.shares[0] = Share { of: place, less: None, factor };
+        }
+        self.put(self.given.len(), place, at, &functional, &mut given);
         self.given.push(given);
     }
 
-    /// Rows of the interface points: the equation on both sides, the jump of u, the jump of the flux.
+    /// Rows of the interface points: the equation on both sides, the law of the values, the jump of the flux.
     fn interface_rows(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         let radius = stencil.radius;
         let center = &stencil.center;
@@ -392,18 +403,33 @@ impl<const D: usize> Fit<D> {
             let scales = places.map(|place| self.parts.scale(place));
             let conductance: [f64; 2] = std::array::from_fn(|s| point.sides[s].eta * scales[s]);
             let largest = conductance[0].max(conductance[1]);
+            let law = &point.law;
+            let [own, other] = law.partition;
+            // What the flux of the law makes of a slope in z, and on which side.
+            let through = usize::from(!law.of_here);
+            let film = law.resistance * conductance[through] / radius;
             // As w are compared: both sides may be stiff.
-            let of_value = weight / scales[0].max(scales[1]);
+            let of_value = weight / (scales[0] / own).max(scales[1] / other).max(film);
             let [below, above] = places.map(|place| maker.unknowns.offset[stencil.parts[place] as usize]);
-            let known = of_value * (point.value - (above - below));
-            let share = Share { of: places[0], less: Some(places[1]), factor: of_value };
-            let mut value = Given { known, unit_source: 0.0, share };
-            let mut flux = Given { known: weight * radius * point.flux / largest, ..Given::default() };
+            let (held, shares) = if own == other {
+                let share = Share { of: places[0], less: Some(places[1]), factor: of_value / own };
+                ((above - below) / own, [share, Share::default()])
+            } else {
+                let share = |side: usize, factor: f64| Share { of: places[side], less: None, factor };
+                (above / other - below / own, [share(0, of_value / own), share(1, -of_value / other)])
+            };
+            let known = of_value * (law.value - held);
+            let mut value = Given { known, unit_source: 0.0, shares };
+            let mut flux = Given { known: weight * radius * law.flux / largest, ..Given::default() };
             let first = self.given.len();
             self.given.resize(first + 2, Given::default());
             for (s, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 self.parts.evaluate(maker, places[s], &z, true, &mut jet);
-                let row = Row::of_value(sign * of_value * scales[s]);
+                let row = Row::of_value(sign * of_value * scales[s] / law.partition[s]);
+                let row = match film != 0.0 && s == through {
+                    true => Row { gradient: point.normal.map(|n| -of_value * film * n), ..row },
+                    false => row,
+                };
                 self.put(first, places[s], (&z, &jet), &row, &mut value);
                 let strength = sign * weight * conductance[s] / largest;
                 let slope = Row { gradient: point.normal.map(|n| strength * n), ..Row::of_value(0.0) };
@@ -411,7 +437,8 @@ impl<const D: usize> Fit<D> {
                 if self.parts.has_rows(places[s]) {
                     let side = &point.sides[s];
                     let at = (&z, &jet);
-                    self.equation(maker, places[s], at, &side.slope, radius, conductance[s], side.source);
+                    let of = (places[s], (stencil.parts[places[s]], conductance[s]));
+                    self.equation(maker, of, at, &side.operator, radius, side.source);
                 }
             }
             (self.given[first], self.given[first + 1]) = (value, flux);

@@ -6,7 +6,7 @@
 //! contrast, `w` is of the size of the neighbours' values, and the flux is as accurate as theirs.
 //!
 //! That holds only where nothing else drives a larger flux through the part: values that differ from place to place, a source, a
-//! prescribed flux. Such a part keeps its nodal values.
+//! prescribed flux, a reaction, which turns the level itself into a source. Such a part keeps its nodal values.
 
 use super::interface::InterfacePoints;
 use crate::{Condition, Problem};
@@ -99,6 +99,9 @@ fn survey<const D: usize>(
     for (node, value) in problem.dirichlet().into_iter().enumerate() {
         let Some(value) = value else { continue };
         widen(&mut levels, value);
+        if problem.materials[problem.labels[node] as usize].reaction.is_some() {
+            continue;
+        }
         widen(parts[part_of[node] as usize].values.get_or_insert([f64::INFINITY, f64::NEG_INFINITY]), value);
     }
     for (node, conditions) in problem.cloud.boundary().iter().zip(problem.conditions) {
@@ -114,10 +117,10 @@ fn survey<const D: usize>(
         }
     }
     for point in &interfaces.points {
-        let drives = point.flux.abs() * length;
+        let drives = point.law.flux.abs() * length;
         for side in &point.sides {
             let part = &mut parts[side.part as usize];
-            part.drive = part.drive.max(drives).max(point.value.abs() * point.smallest());
+            part.drive = part.drive.max(drives).max(point.law.value.abs() * point.smallest());
         }
     }
     (parts, levels)

@@ -4,8 +4,10 @@ use meshless_neighbors::CellList;
 
 use super::connected::ConnectedParts;
 use super::corner::Corner;
+use super::operator::Operator;
+use crate::equation::Contact;
 use crate::parallel;
-use crate::{Field, InterfaceJump, MethodError, Problem};
+use crate::{InterfaceLaw, MethodError, Problem};
 
 /// Least distance between two points of an interface, in spacings of the cloud. Candidates lie densely, so that gaps are
 /// at most twice as long; distances of 0.3 to 1.2 serve as well, 2.5 is too far.
@@ -30,10 +32,14 @@ pub(super) struct Side<const D: usize> {
     pub(super) part: u32,
     /// Diffusivity.
     pub(super) eta: f64,
-    /// Gradient of its logarithm.
-    pub(super) slope: [f64; D],
+    /// The equation beside the source.
+    pub(super) operator: Operator<D>,
     /// Source.
     pub(super) source: f64,
+    /// The factor of du/dt.
+    pub(super) capacity: f64,
+    /// The derivative of its logarithm along the normal.
+    pub(super) capacity_slope: f64,
 }
 
 /// A point of an interface.
@@ -43,11 +49,9 @@ pub(super) struct InterfacePoint<const D: usize> {
     pub(super) normal: [f64; D],
     /// Both sides.
     pub(super) sides: [Side<D>; 2],
-    /// `u_1 - u_0`.
-    pub(super) value: f64,
-    /// `(eta du/dn)_1 - (eta du/dn)_0`.
-    pub(super) flux: f64,
-    /// How fast both change with time.
+    /// What holds between them, from the first side to the second.
+    pub(super) law: Contact,
+    /// How fast the value and the flux of it change with time.
     pub(super) rates: [f64; 2],
 }
 
@@ -154,7 +158,7 @@ fn beside_corners<const D: usize>(
     all: &mut Vec<Candidate<D>>,
 ) {
     let Candidate { at, normal, labels, spacing } = candidate;
-    let jump = problem.jump_between(labels[0], labels[1]);
+    let jump = problem.law_between(labels[0], labels[1]);
     let pieces = match jump.and_then(|(jump, _)| jump.flux.as_ref()) {
         Some(_) => Corner { problem, labels, at, normal, spacing }.pieces(),
         None => Vec::new(),
@@ -190,27 +194,43 @@ fn point<const D: usize>(
             );
             return Err(MethodError::InvalidProblem { what });
         }
-        let slope = material.diffusivity.gradient(at, GRADIENT_STEP * spacing).map(|g| g / eta);
+        let step = GRADIENT_STEP * spacing;
+        let operator = Operator::of(material, eta, at, step);
+        finite(operator.drift.iter().sum::<f64>() + operator.decay, "velocity or the reaction", at)?;
         let source = material.source.as_ref().map_or(0.0, |f| f.at(at));
         finite(source, "source", at)?;
-        Ok(Side { part, eta, slope, source })
+        let (capacity, capacity_slope) = match &material.capacity {
+            None => (1.0, 0.0),
+            Some(field) => {
+                let (value, slope) = (field.at(at), field.gradient(at, step));
+                (value, (0..D).map(|k| slope[k] * normal[k]).sum::<f64>() / value)
+            }
+        };
+        finite(capacity + capacity_slope, "capacity", at)?;
+        Ok(Side { part, eta, operator, source, capacity, capacity_slope })
     };
     let sides = [side(first, labels[0])?, side(second, labels[1])?];
-    let [value, flux] = jumps(problem.jump_between(labels[0], labels[1]), at);
-    finite(value, "jump of u", at)?;
-    finite(flux, "jump of the flux", at)?;
-    let rates = jumps(problem.jump_rate_between(labels[0], labels[1]), at);
+    let law = law_at(problem.law_between(labels[0], labels[1]), at);
+    finite(law.value, "jump of u", at)?;
+    finite(law.flux, "jump of the flux", at)?;
+    finite(law.resistance, "resistance", at)?;
+    if law.resistance < 0.0 {
+        let what = format!(
+            "the resistance is {} at the interface point {at:?}; it must not be negative",
+            law.resistance
+        );
+        return Err(MethodError::InvalidProblem { what });
+    }
+    let rates = law_at(problem.law_rate_between(labels[0], labels[1]), at);
+    let rates = [rates.value, rates.flux];
     finite(rates[0], "rate of the jump of u", at)?;
     finite(rates[1], "rate of the jump of the flux", at)?;
-    Ok(Some(InterfacePoint { normal: *normal, sides, value, flux, rates }))
+    Ok(Some(InterfacePoint { normal: *normal, sides, law, rates }))
 }
 
-/// The jump of u and that of its flux. The normal of the scene's entry may point the other way: then u jumps by the opposite,
-/// and the flux, whose sign turns with the normal as well as with the order of the sides, by the same.
-fn jumps<const D: usize>(jump: Option<(&InterfaceJump<D>, f64)>, at: &[f64; D]) -> [f64; 2] {
-    let Some((jump, sign)) = jump else { return [0.0; 2] };
-    let given = |field: Option<&Field<D>>| field.map_or(0.0, |f| f.at(at));
-    [sign * given(jump.value.as_ref()), given(jump.flux.as_ref())]
+/// The law of an interface at a point, if it has one.
+fn law_at<const D: usize>(law: Option<(&InterfaceLaw<D>, f64)>, at: &[f64; D]) -> Contact {
+    law.map_or(Contact::PERFECT, |(law, sign)| law.at(sign, at))
 }
 
 fn finite<const D: usize>(value: f64, what: &str, at: &[f64; D]) -> Result<(), MethodError> {

@@ -6,6 +6,7 @@ use super::adapted::Adapted;
 use super::basis::Basis;
 use super::fit::{Combination, Fit};
 use super::interface::InterfacePoints;
+use super::operator::Operator;
 use super::params::{Form, SharpParams};
 use super::particular::Particular;
 use super::rate::{RateFit, Rates};
@@ -53,8 +54,12 @@ pub(super) struct Maker<'a, const D: usize> {
     /// Vertices where functions of their own take the place of polynomials.
     pub(super) vertices: Vertices,
     pub(super) boundary_rows: Vec<Vec<BoundaryRow<D>>>,
-    /// Gradient of the logarithm of the diffusivity at every node; none where it is constant in every region.
-    slopes: Option<Vec<[f64; D]>>,
+    /// The equation at every node, beside the source; none where it is the Laplacian everywhere.
+    operators: Option<Vec<Operator<D>>>,
+    /// The factor of du/dt at every node; none where it is 1 everywhere.
+    capacities: Option<Vec<f64>>,
+    /// Whether a constant solves the equation without data, in every region and across every interface.
+    pub(super) keeps_constants: bool,
     nodes: &'a CellList<'a, D>,
     points: CellList<'a, D>,
 }
@@ -109,7 +114,7 @@ impl<'a, const D: usize> Maker<'a, D> {
             |m: &Material<D>| is_constant(m) && m.source.as_ref().is_some_and(|f| f.as_constant().is_none());
         let trefftz = params.form == Form::Trefftz;
         let fitted = trefftz && problem.materials.iter().any(is_fitted);
-        let adapted = trefftz && !problem.materials.iter().all(is_constant);
+        let adapted = trefftz && !problem.materials.iter().all(|m| is_constant(m) && !m.has_lower_terms());
         let harmonic_basis = Basis::harmonic(params.degree());
         Ok(Self {
             problem,
@@ -123,15 +128,29 @@ impl<'a, const D: usize> Maker<'a, D> {
             interfaces,
             vertices: Vertices::find(problem, &params, unknowns, nodes),
             boundary_rows: boundary_rows(problem)?,
-            slopes: slopes(problem),
+            operators: operators(problem),
+            capacities: (params.unsteady && problem.has_capacities())
+                .then(|| parallel::map(problem.cloud.len(), |i| problem.capacity(i))),
+            keeps_constants: problem.materials.iter().all(|m| m.reaction.is_none())
+                && problem.laws.iter().all(|law| law.partition[0] == law.partition[1]),
             nodes,
             points: CellList::new(&interfaces.places, 3.0 * widest)?,
         })
     }
 
-    /// Gradient of the logarithm of the diffusivity at a node.
-    pub(super) fn slope(&self, j: usize) -> [f64; D] {
-        self.slopes.as_ref().map_or([0.0; D], |slopes| slopes[j])
+    /// The equation at a node, beside the source.
+    pub(super) fn operator(&self, j: usize) -> Operator<D> {
+        self.operators.as_ref().map_or(Operator::LAPLACIAN, |operators| operators[j])
+    }
+
+    /// The factor of du/dt at a node.
+    pub(super) fn capacity(&self, j: usize) -> f64 {
+        self.capacities.as_ref().map_or(1.0, |capacities| capacities[j])
+    }
+
+    /// Whether rows may be balances over cells: those of steady diffusion.
+    pub(super) fn may_balance(&self) -> bool {
+        D > 1 && self.rates.is_none() && !self.problem.has_lower_terms()
     }
 
     /// The conditions on the flux at a node that a fit has as rows: functions of a vertex meet all but those at the ends of an edge.
@@ -273,7 +292,8 @@ impl<'a, const D: usize> Maker<'a, D> {
         let held = stencil.vertex.is_some_and(|vertex| self.vertices.get(vertex).is_held());
         let exchanges = |&j: &u32| self.boundary_rows[j as usize].iter().any(|row| row.exchange != 0.0);
         // Constants are reproduced where nothing but differences is prescribed: no rounding remains of their sum.
-        let row_sum = if !held && stencil.parts.iter().all(uniform) && !stencil.nodes.iter().any(exchanges) {
+        let keeps_constants = self.keeps_constants && !held && stencil.parts.iter().all(uniform);
+        let row_sum = if keeps_constants && !stencil.nodes.iter().any(exchanges) {
             0.0
         } else {
             factor * (1.0 - combination.values[0]) + coefficients.iter().sum::<f64>()
@@ -329,14 +349,14 @@ fn boundary_rows<const D: usize>(problem: &Problem<'_, D>) -> Result<Vec<Vec<Bou
     Ok(rows)
 }
 
-fn slopes<const D: usize>(problem: &Problem<'_, D>) -> Option<Vec<[f64; D]>> {
-    if problem.materials.iter().all(|m| m.diffusivity.as_constant().is_some()) {
+fn operators<const D: usize>(problem: &Problem<'_, D>) -> Option<Vec<Operator<D>>> {
+    if problem.materials.iter().all(|m| m.diffusivity.as_constant().is_some() && !m.has_lower_terms()) {
         return None;
     }
-    let slope = |i: usize| {
-        let field = &problem.materials[problem.labels[i] as usize].diffusivity;
+    let operator = |i: usize| {
+        let material = &problem.materials[problem.labels[i] as usize];
         let step = GRADIENT_STEP * problem.cloud.spacing()[i];
-        field.gradient(&problem.cloud.points()[i], step).map(|g| g / problem.eta[i])
+        Operator::of(material, problem.eta[i], &problem.cloud.points()[i], step)
     };
-    Some(parallel::map(problem.cloud.len(), slope))
+    Some(parallel::map(problem.cloud.len(), operator))
 }

@@ -16,6 +16,7 @@ mod harmonic;
 mod held;
 mod interface;
 mod maker;
+mod operator;
 mod params;
 mod particular;
 mod parts;

@@ -1,6 +1,6 @@
 //! The polynomials of a stencil, one a part of a region: their bases, columns and particular parts.
 
-use super::adapted;
+use super::adapted::{self, LowerTerms};
 use super::basis::{Basis, Jet};
 use super::dense;
 use super::maker::Maker;
@@ -73,8 +73,8 @@ enum Equation {
         /// `-R^2 / (2 D eta s)`: the particular part of a source of 1 over `|z|^2`.
         unit: f64,
     },
-    /// It varies: coefficients of what each harmonic polynomial lacks to solve the equation, of the particular part of the
-    /// source, and of that of a source of 1.
+    /// The equation is more than the Laplacian: coefficients of what each harmonic polynomial lacks to solve it, of the particular part of
+    /// the source, of that of a source of 1, and in time of those of rates that are monomials.
     Adapted(Vec<f64>),
     /// The functions of a vertex, which all parts have in common.
     Vertex,
@@ -159,6 +159,8 @@ pub(super) struct Parts<const D: usize> {
     at_vertex: Option<AtVertex<D>>,
     parts: Vec<Part>,
     columns: usize,
+    /// Harmonic polynomials of a fit.
+    functions: usize,
     pub(super) jet: Jet<D>,
     /// Monomials of particular parts at the point that was evaluated last, and the point.
     particular: Jet<D>,
@@ -175,6 +177,7 @@ impl<const D: usize> Parts<D> {
     pub(super) fn prepare(&mut self, maker: &Maker<'_, D>, stencil: &Stencil<D>) {
         self.parts.resize_with(stencil.parts.len(), Part::default);
         self.columns = 0;
+        self.functions = maker.harmonic_basis.len();
         self.at_vertex = None;
         if let Some(vertex) = stencil.vertex {
             return self.prepare_at_vertex(maker, stencil, vertex);
@@ -188,10 +191,10 @@ impl<const D: usize> Parts<D> {
             // Where diffusivity or source are no numbers somewhere near, rows see them at nodes of their own region only.
             let solved = match (maker.params.form, material.diffusivity.as_constant()) {
                 (Form::General, _) => None,
-                // The rates are sources at nodes, which rows see as they are.
-                (Form::Trefftz, None) if maker.rates.is_some() => None,
-                (Form::Trefftz, Some(eta)) => self.harmonic(maker, stencil, material, response / eta),
-                (Form::Trefftz, None) => self.adapted(maker, stencil, material, response),
+                (Form::Trefftz, Some(eta)) if !material.has_lower_terms() => {
+                    self.harmonic(maker, stencil, material, response / eta)
+                }
+                (Form::Trefftz, _) => self.adapted(maker, stencil, material, response),
             };
             let first_column = self.columns;
             let basis = if solved.is_some() { &maker.harmonic_basis } else { &maker.complete_basis };
@@ -316,11 +319,52 @@ impl<const D: usize> Parts<D> {
                 values.resize(eta.len(), 0.0);
             }
         }
+        let mut sources = vec![values, self.unit.clone()];
+        if let Some(rates) = &maker.rates {
+            // A rate is a source of the opposite sign.
+            sources.extend(rates.monomials(&adapted.samples).into_iter().map(|mut monomial: Vec<f64>| {
+                monomial.iter_mut().zip(&self.unit).for_each(|(value, unit)| *value *= -unit);
+                monomial
+            }));
+        }
+        let lower = finite.and_then(|()| self.lower_terms(stencil, &adapted.samples, material, &eta));
         let mut coefficients = Vec::new();
-        let found = finite.is_some()
-            && adapted.solve(&eta, &[&values, &self.unit], &mut self.adapted, &mut coefficients);
-        (self.eta, self.values) = (eta, values);
+        let found = lower.is_some_and(|lower| {
+            let sources: Vec<&[f64]> = sources.iter().map(Vec::as_slice).collect();
+            adapted.solve((&eta, &lower), &sources, &mut self.adapted, &mut coefficients)
+        });
+        (self.eta, self.values) = (eta, sources.swap_remove(0));
         found.then_some(Equation::Adapted(coefficients))
+    }
+
+    /// The velocity and the reaction of a material in the units of a stencil, with the diffusivity at the samples; `None` where they are no
+    /// numbers somewhere.
+    fn lower_terms(
+        &mut self,
+        stencil: &Stencil<D>,
+        samples: &[[f64; D]],
+        material: &Material<D>,
+        eta: &[f64],
+    ) -> Option<LowerTerms<D>> {
+        let mut lower = LowerTerms::default();
+        let mut over_eta = |field: &Field<D>, unit: f64| {
+            let mut values = Vec::new();
+            self.sample(stencil, samples, field, &mut values)?;
+            values.iter_mut().zip(eta).for_each(|(value, eta)| *value *= unit / eta);
+            Some(values)
+        };
+        let radius = stencil.radius;
+        if let Some(velocity) = &material.velocity {
+            let mut all: [Vec<f64>; D] = std::array::from_fn(|_| Vec::new());
+            for (values, field) in all.iter_mut().zip(velocity) {
+                *values = over_eta(field, radius)?;
+            }
+            lower.velocity = Some(all);
+        }
+        if let Some(reaction) = &material.reaction {
+            lower.reaction = Some(over_eta(reaction, radius * radius)?);
+        }
+        Some(lower)
     }
 
     pub(super) fn columns(&self) -> usize {
@@ -355,6 +399,14 @@ impl<const D: usize> Parts<D> {
     pub(super) fn response(&self, part: usize) -> Option<f64> {
         match self.parts[part].equation {
             Equation::Harmonic { unit, .. } => Some(-((2 * D) as f64) * unit),
+            _ => None,
+        }
+    }
+
+    /// The coefficients, in monomials of the adapted form, of the particular parts of rates that are monomials: one list after the other.
+    pub(super) fn of_rates(&self, part: usize, monomials: usize) -> Option<&[f64]> {
+        match &self.parts[part].equation {
+            Equation::Adapted(coefficients) => Some(&coefficients[(self.functions + 2) * monomials..]),
             _ => None,
         }
     }
@@ -450,8 +502,8 @@ impl<const D: usize> Parts<D> {
             }
             Equation::Adapted(coefficients) => {
                 let count = self.particular.values.len();
-                let [source, unit] = [2, 1].map(|from_end| coefficients.len() - from_end * count);
-                [of_monomials(&coefficients[source..unit]), of_monomials(&coefficients[unit..])]
+                let given = &coefficients[self.functions * count..];
+                [of_monomials(&given[..count]), of_monomials(&given[count..2 * count])]
             }
         }
     }

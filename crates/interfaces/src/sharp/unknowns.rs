@@ -116,8 +116,8 @@ fn offsets<const D: usize>(
             continue;
         }
         match between.iter_mut().find(|(of, ..)| *of == pair) {
-            Some((_, sum, points)) => (*sum, *points) = (*sum + point.value, *points + 1.0),
-            None => between.push((pair, point.value, 1.0)),
+            Some((_, sum, points)) => (*sum, *points) = (*sum + point.law.value, *points + 1.0),
+            None => between.push((pair, point.law.value, 1.0)),
         }
     }
     let mut offset: Vec<Option<f64>> = vec![None; count];

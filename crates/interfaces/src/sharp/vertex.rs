@@ -274,7 +274,7 @@ impl Vertex {
         known: &[Option<f64>],
         source: &mut SourcePolynomials,
     ) -> Result<Self, Obstacle> {
-        if params.unsteady || params.form != Form::Trefftz {
+        if params.unsteady || params.form != Form::Trefftz || problem.has_lower_terms() {
             return Err(Obstacle::Method);
         }
         if let Some(obstacle) = local.obstacle {

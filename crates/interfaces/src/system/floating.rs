@@ -3,7 +3,7 @@
 use meshless_geometry::RegionGraph;
 use meshless_sparse::{Cluster, ComponentInfo, DEFAULT_THRESHOLD, DifferenceMatrix, Split, clusters};
 
-use crate::{Condition, MethodError, Problem, adjacent_pairs};
+use crate::{Condition, Field, InterfaceLaw, MethodError, Problem, adjacent_pairs};
 
 /// A row holds a stiff region if it is tied to the outside by this part of its largest entry: about as many digits are lost
 /// where the constant is no unknown of its own.
@@ -69,6 +69,7 @@ fn with_surroundings<const D: usize>(
     mut adjacency: Vec<Vec<u32>>,
 ) -> (Vec<ComponentInfo>, Vec<Vec<u32>>) {
     let mut components = component_infos(problem, graph);
+    add_films(problem, graph, &mut components, &mut adjacency);
     add_surroundings(problem, graph, &mut components, &mut adjacency);
     (components, adjacency)
 }
@@ -160,7 +161,8 @@ pub(super) fn split<const D: usize>(
 /// Whether anything can float at all: the graph of regions is not built otherwise.
 fn levels_differ<const D: usize>(problem: &Problem<'_, D>) -> bool {
     let robin = problem.conditions.iter().flatten().filter_map(|c| robin_level(problem, c));
-    let levels = problem.eta.iter().copied().chain(robin);
+    let films = problem.laws.iter().filter_map(|law| film_level(problem, law));
+    let levels = problem.eta.iter().copied().chain(robin).chain(films);
     let (low, high) = levels.fold((f64::INFINITY, 0.0_f64), |(l, h), level| (l.min(level), h.max(level)));
     high > DEFAULT_THRESHOLD * low
 }
@@ -171,6 +173,56 @@ fn robin_level<const D: usize>(problem: &Problem<'_, D>, condition: &Condition) 
     let Condition::Robin { a, b, .. } = *condition else { return None };
     let level = (a / b).abs() * problem.domain.bounds().diameter();
     (level > 0.0 && level.is_finite()).then_some(level)
+}
+
+/// The diffusivity that a layer of the size of the domain would have if it let through as much as the film of an interface does.
+fn film_level<const D: usize>(problem: &Problem<'_, D>, law: &InterfaceLaw<D>) -> Option<f64> {
+    let resistance = match law.resistance.as_ref()? {
+        Field::Constant(value) => *value,
+        // Where it is least, as far as the nodes on one of its sides tell.
+        field => {
+            let own = problem.labels.iter().zip(problem.cloud.points());
+            let near = own.filter(|(label, _)| **label == law.between[0]).map(|(_, x)| field.at(x));
+            near.filter(|value| *value >= 0.0).fold(f64::INFINITY, f64::min)
+        }
+    };
+    let level = problem.domain.bounds().diameter() / resistance;
+    (level > 0.0 && level.is_finite()).then_some(level)
+}
+
+/// Puts a component of its own between parts with a film in between that lets through far less than either of them. All of these are as tight
+/// as the tightest: films of several levels would be clusters without nodes.
+fn add_films<const D: usize>(
+    problem: &Problem<'_, D>,
+    graph: &RegionGraph,
+    components: &mut Vec<ComponentInfo>,
+    adjacency: &mut Vec<Vec<u32>>,
+) {
+    let label = |c: u32| graph.components()[c as usize].label;
+    let count = graph.components().len() as u32;
+    let mut films: Vec<[u32; 2]> = Vec::new();
+    let mut tightest = f64::INFINITY;
+    for law in problem.laws {
+        let Some(level) = film_level(problem, law) else { continue };
+        let [from, to] = law.between;
+        for a in (0..count).filter(|&c| label(c) == from) {
+            for b in (0..count).filter(|&c| label(c) == to) {
+                let [first, second] = [a, b].map(|c| components[c as usize].eta_min);
+                let touch = adjacency[a as usize].contains(&b) || adjacency[b as usize].contains(&a);
+                if touch && level * DEFAULT_THRESHOLD <= first.min(second) {
+                    films.push([a, b]);
+                    tightest = tightest.min(level);
+                }
+            }
+        }
+    }
+    for [a, b] in films {
+        components.push(ComponentInfo { eta_min: tightest, eta_max: tightest, touches_fixed: false });
+        adjacency.push(vec![a, b]);
+        for (own, other) in [(a, b), (b, a)] {
+            adjacency[own as usize].retain(|&c| c != other);
+        }
+    }
 }
 
 fn all_have_unknowns(found: &[Cluster], component: &[u32], components: usize) -> bool {
@@ -191,6 +243,10 @@ fn component_infos<const D: usize>(problem: &Problem<'_, D>, graph: &RegionGraph
         if conditions.iter().any(|c| matches!(c, Condition::Dirichlet(_))) {
             infos[graph.component_of(node.node) as usize].touches_fixed = true;
         }
+    }
+    // What reacts has a level of its own.
+    for (info, component) in infos.iter_mut().zip(graph.components()) {
+        info.touches_fixed |= problem.materials[component.label as usize].reaction.is_some();
     }
     infos
 }

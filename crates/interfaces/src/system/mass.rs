@@ -3,7 +3,7 @@
 use meshless_sparse::DifferenceMatrix;
 
 use crate::method::SplitRows;
-use crate::{Discretization, MethodError, RowKind};
+use crate::{Discretization, MethodError, Problem, RowKind};
 
 /// Off-diagonal entries of the wrong sign below this part of a row are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 /// M of a discretisation.
 #[derive(Debug, Clone)]
 pub enum Mass {
-    /// The volume of every row; zero for those that are algebraic equations.
+    /// The capacity of every row, its volume where none is given; zero for those that are algebraic equations.
     Diagonal(Vec<f64>),
     /// Rows over the values of the nodes.
     Rows(Box<MassRows>),
@@ -35,14 +35,20 @@ impl Mass {
     ///
     /// # Errors
     /// Numbers that are not finite.
-    pub fn of(discretization: &Discretization) -> Result<Self, MethodError> {
+    pub fn of<const D: usize>(
+        problem: &Problem<'_, D>,
+        discretization: &Discretization,
+    ) -> Result<Self, MethodError> {
         let Some(nodal) = &discretization.mass else {
-            let mass = |(kind, volume): (&RowKind, &f64)| match kind {
-                RowKind::Dirichlet | RowKind::StrongBoundary => 0.0,
-                _ => *volume,
+            let capacity = |i: usize| match &discretization.capacities {
+                Some(capacities) => capacities[i],
+                None => discretization.volumes[i] * problem.capacity(i),
             };
-            let mut all: Vec<f64> =
-                discretization.kinds.iter().zip(&discretization.volumes).map(mass).collect();
+            let mass = |(i, kind): (usize, &RowKind)| match kind {
+                RowKind::Dirichlet | RowKind::StrongBoundary => 0.0,
+                _ => capacity(i),
+            };
+            let mut all: Vec<f64> = discretization.kinds.iter().enumerate().map(mass).collect();
             // Further unknowns follow from the nodes.
             all.resize(discretization.rows.n(), 0.0);
             return Ok(Self::Diagonal(all));

@@ -2,7 +2,7 @@
 
 use meshless_geometry::{Layout, Shape};
 use meshless_interfaces::particle_difference::{ParticleDifferenceExtended, ParticleDifferenceParams, Wedge};
-use meshless_interfaces::{Condition, Field, InterfaceJump, Method, solve};
+use meshless_interfaces::{Condition, Field, InterfaceLaw, Method, solve};
 
 use crate::support::{Setup, dot, max_difference, unit};
 
@@ -23,7 +23,7 @@ fn kinked<const D: usize>(eta: [f64; 2], wedge: Wedge, decaying: bool, seed: u64
         .regions(vec![Some(Shape::half_space([0.47; D], normal).unwrap()), None], &eta)
         .conditions(move |_, x| Condition::Dirichlet(u(x)));
     let (value, flux) = (Some(Field::Constant(value)), Some(Field::Constant(flux)));
-    setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux, prescribed: None }];
+    setup.laws = vec![InterfaceLaw { value, flux, ..InterfaceLaw::new([0, 1]) }];
     let params = ParticleDifferenceParams { wedge, decaying, ..ParticleDifferenceParams::default() };
     let (method, problem) = (ParticleDifferenceExtended { params }, setup.problem());
     let rows = method.discretize(&problem).unwrap();

@@ -47,7 +47,7 @@ pub(crate) fn largest_growth<const D: usize>(
 
 /// Growth in the root mean square by the last of many implicit steps of one size.
 fn growth<const D: usize>(setup: &Setup<D>, rows: &Discretization, c: f64) -> f64 {
-    let mass = Mass::of(rows).unwrap();
+    let mass = Mass::of(&setup.problem(), rows).unwrap();
     let (shifted, constants) = mass.shifted(rows, c).unwrap();
     let n = rows.rows.n();
     let known: Vec<bool> =
@@ -133,7 +133,7 @@ fn balances_bound_growth() {
     let setup = contact::<2>(wall, Layout::Irregular, 0.09, 1, 1e6);
     let bound = |params| {
         let rows = setup.discretize(params);
-        Mass::of(&rows).unwrap().growth_bound(&rows)
+        Mass::of(&setup.problem(), &rows).unwrap().growth_bound(&rows)
     };
     let balances = bound(GfdmParams::conservative()).unwrap();
     // Rates reach 1e6 over the square of the spacing, 1e8; rounding of them is what is left.

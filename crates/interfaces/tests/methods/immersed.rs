@@ -3,7 +3,7 @@
 use meshless_geometry::{Layout, Shape};
 use meshless_interfaces::dcpse::{Ghosts, ImmersedInterface, ImmersedParams, Interpolation};
 use meshless_interfaces::{
-    Condition, Discretization, Field, InterfaceJump, Method, PseudoTimeParams, RowKind, pseudo_time,
+    Condition, Discretization, Field, InterfaceLaw, Method, PseudoTimeParams, RowKind, pseudo_time,
 };
 use proptest::prelude::*;
 
@@ -88,7 +88,7 @@ fn piecewise<const D: usize>(
             condition_of_kind(kinds[face.0 as usize], q[k].at(x), slope, eta[k])
         });
     let (value, flux) = (Some(Field::from_fn(value)), Some(Field::from_fn(flux)));
-    setup.jumps = vec![InterfaceJump { between: [0, 1], value, flux, prescribed: None }];
+    setup.laws = vec![InterfaceLaw { value, flux, ..InterfaceLaw::new([0, 1]) }];
     let u = setup.nodal(|label, x| q[label as usize].at(x));
     let params = ImmersedParams { ghosts: Ghosts::Constrained { degree }, ..Default::default() };
     let rows = ImmersedInterface { params }.discretize(&setup.problem()).unwrap();
@@ -167,7 +167,7 @@ fn ghosts_by_images_are_exact_for_linear_functions() {
             .regions(vec![Some(Shape::half_space([0.5, 0.48], n).unwrap()), None], &eta)
             .conditions(move |_, x| Condition::Dirichlet(value(x)));
         let (jump, flux) = (Some(Field::Constant(0.2)), Some(Field::Constant(0.9)));
-        setup.jumps = vec![InterfaceJump { between: [0, 1], value: jump, flux, prescribed: None }];
+        setup.laws = vec![InterfaceLaw { value: jump, flux, ..InterfaceLaw::new([0, 1]) }];
         let params = ImmersedParams { ghosts: Ghosts::Image(interpolation), ..Default::default() };
         let rows = ImmersedInterface { params }.discretize(&setup.problem()).unwrap();
         let found = defect::<2>(&rows, &setup.nodal(|_, x| value(x)));

@@ -2,15 +2,15 @@
 
 use meshless_geometry::{Domain, FaceId, Layout, Shape};
 use meshless_interfaces::gfdm::GfdmParams;
-use meshless_interfaces::{Condition, Field, InterfaceJump};
+use meshless_interfaces::{Condition, Field, InterfaceLaw};
 use proptest::prelude::*;
 
 use crate::support::{Setup, condition_of_kind, dot, grid, max_difference, relative_l2, unit};
 
 /// A jump given from A to B, or the same one from B to A.
-fn jump<const D: usize>(reversed: bool, value: Field<D>, flux: Field<D>) -> InterfaceJump<D> {
+fn jump<const D: usize>(reversed: bool, value: Field<D>, flux: Field<D>) -> InterfaceLaw<D> {
     let between = if reversed { [1, 0] } else { [0, 1] };
-    InterfaceJump { between, value: Some(value), flux: Some(flux), prescribed: None }
+    InterfaceLaw { value: Some(value), flux: Some(flux), ..InterfaceLaw::new(between) }
 }
 
 proptest! {
@@ -52,7 +52,7 @@ fn jumps_are_exact<const D: usize>(
             1 => condition_of_kind(kinds[1], u(x[0]), slopes[1], eta[1]),
             _ => Condition::Flux(0.0),
         });
-    setup.jumps = vec![jump(reversed, Field::Constant(value), Field::Constant(flux))];
+    setup.laws = vec![jump(reversed, Field::Constant(value), Field::Constant(flux))];
     let exact = setup.nodal(|_, x| u(x[0]));
     let size = 1.0 + exact.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
     for params in [
@@ -85,7 +85,7 @@ fn ball_error<const D: usize>(spacing: f64, seed: u64, reversed: bool, params: G
         .regions(vec![Some(Shape::ball([0.0; D], RADIUS).unwrap()), None], &ETA)
         .source(|label, _| if label == 0 { -ETA[0] * 2.0 * D as f64 } else { 2.0 * ETA[1] })
         .conditions(move |_: FaceId, x| Condition::Dirichlet(outside(x)));
-    setup.jumps = vec![jump(reversed, Field::from_fn(move |x| sign * value(x)), Field::from_fn(flux))];
+    setup.laws = vec![jump(reversed, Field::from_fn(move |x| sign * value(x)), Field::from_fn(flux))];
     let exact = setup.nodal(|label, x| if label == 0 { inside(x) } else { outside(x) });
     relative_l2(&setup.solve(params), &exact)
 }
@@ -122,7 +122,7 @@ fn the_direction_in_which_a_jump_is_given_does_not_matter() {
 #[test]
 fn the_classical_method_refuses_jumps() {
     let mut setup = Setup::<1>::new(unit(), grid(8, |_| true));
-    setup.jumps = vec![jump(false, Field::Constant(1.0), Field::Constant(0.0))];
+    setup.laws = vec![jump(false, Field::Constant(1.0), Field::Constant(0.0))];
     let error = setup.try_solve(GfdmParams::classical()).unwrap_err().to_string();
     assert!(error.contains("jump") && error.contains("gfdm-hybrid"), "{error}");
 }

@@ -2,7 +2,7 @@
 
 use meshless_geometry::{Cloud, Layout, Shape};
 use meshless_interfaces::particle_difference::{ParticleDifference, ParticleDifferenceParams};
-use meshless_interfaces::{Condition, Discretization, Field, InterfaceJump, Method, RowKind};
+use meshless_interfaces::{Condition, Discretization, Field, InterfaceLaw, Method, RowKind};
 use proptest::prelude::*;
 
 use crate::support::{Setup, dot, max_difference, unit};
@@ -99,12 +99,8 @@ fn wedge_defects<const D: usize>(
     let mut setup = Setup::<D>::generated(unit(), Layout::Irregular, [0.02, 0.07, 0.19][D - 1], seed)
         .regions(vec![Some(Shape::half_space(through, n).unwrap()), None], &eta)
         .sources(eta.map(|eta| Field::Constant(-eta * q.laplacian())).to_vec());
-    setup.jumps = vec![InterfaceJump {
-        between: [0, 1],
-        value: None,
-        flux: Some(Field::from_fn(flux)),
-        prescribed: None,
-    }];
+    setup.laws =
+        vec![InterfaceLaw { value: None, flux: Some(Field::from_fn(flux)), ..InterfaceLaw::new([0, 1]) }];
     let u = setup.nodal(|label, x| q.at(x) + side(label) * distance(x));
     defects(&setup, params, &u, |label, x| {
         let g = q.gradient(x);
@@ -131,7 +127,7 @@ fn piecewise_defects<const D: usize>(
         .sources((0..2).map(|k| Field::Constant(-eta[k] * q[k].laplacian())).collect());
     let between = if reversed { [1, 0] } else { [0, 1] };
     let (value, flux) = (Some(Field::from_fn(value)), Some(Field::from_fn(flux)));
-    setup.jumps = vec![InterfaceJump { between, value, flux, prescribed: None }];
+    setup.laws = vec![InterfaceLaw { value, flux, ..InterfaceLaw::new(between) }];
     let u = setup.nodal(|label, x| q[label as usize].at(x));
     defects(&setup, params, &u, |label, x| q[label as usize].gradient(x))
 }
@@ -195,7 +191,7 @@ fn an_interface_at_which_nothing_jumps_leaves_the_plain_stencils_bit_for_bit() {
     let with = plain.clone().regions(vec![Some(Shape::ball([0.45, 0.52], 0.27).unwrap()), None], &[1.0, 1.0]);
     let mut zero = with.clone();
     let nothing = Some(Field::from_fn(|_: &[f64; 2]| 0.0));
-    zero.jumps = vec![InterfaceJump { between: [0, 1], value: None, flux: nothing, prescribed: None }];
+    zero.laws = vec![InterfaceLaw { value: None, flux: nothing, ..InterfaceLaw::new([0, 1]) }];
     let mut varying = with.clone();
     varying.set_diffusivities(vec![Field::from_fn(|_: &[f64; 2]| 1.0), Field::Constant(1.0)]);
     for params in [ParticleDifferenceParams::paper(), ParticleDifferenceParams::default()] {

@@ -4,7 +4,7 @@ use meshless_geometry::{Layout, Shape};
 use meshless_interfaces::dcpse::{
     Indicators, ReactionParams, ReactionSource, Sigma, Smoothing, SurfaceReaction,
 };
-use meshless_interfaces::{Condition, Field, InterfaceJump, Method, MethodError};
+use meshless_interfaces::{Condition, Field, InterfaceLaw, Method, MethodError};
 use proptest::prelude::*;
 
 use crate::support::{Setup, max_difference, unit};
@@ -60,11 +60,10 @@ fn the_operator_on_a_ramp_makes_a_kink_exact() {
             .with_support(2.9)
             .regions(vec![Some(Shape::half_space([0.5, 0.48], n).unwrap()), None], &[2.0, 2.0])
             .conditions(move |_, x| Condition::Dirichlet(value(x)));
-        setup.jumps = vec![InterfaceJump {
-            between: [0, 1],
+        setup.laws = vec![InterfaceLaw {
             value: None,
             flux: Some(Field::Constant(14.0)),
-            prescribed: None,
+            ..InterfaceLaw::new([0, 1])
         }];
         let exact = setup.nodal(|_, x| value(x));
         let error = |params| max_difference(&setup.solve_by(&SurfaceReaction { params }), &exact);
@@ -101,12 +100,8 @@ fn the_harmonic_mean_converges_across_layers_and_the_arithmetic_one_does_not() {
 #[test]
 fn jumps_of_the_value_are_refused() {
     let mut setup = disc(Layout::Jittered, 0.1, [1.0; 3]);
-    setup.jumps = vec![InterfaceJump {
-        between: [0, 1],
-        value: Some(Field::Constant(1.0)),
-        flux: None,
-        prescribed: None,
-    }];
+    setup.laws =
+        vec![InterfaceLaw { value: Some(Field::Constant(1.0)), flux: None, ..InterfaceLaw::new([0, 1]) }];
     let refused = SurfaceReaction::default().discretize(&setup.problem());
     assert!(matches!(refused, Err(MethodError::Unsupported { .. })));
 }

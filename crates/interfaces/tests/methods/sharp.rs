@@ -45,11 +45,10 @@ fn setup(inside: f64) -> Setup<2> {
     let flux = Field::from_fn(move |x: &[f64; 2]| {
         (1.0 - inside.min(1.0)) * (3.0 * x[0]).sin() / 3.0 * x[0] / RADIUS
     });
-    setup.jumps.push(meshless_interfaces::InterfaceJump {
-        between: [0, 1],
+    setup.laws.push(meshless_interfaces::InterfaceLaw {
         value: Some(jump),
         flux: Some(flux),
-        prescribed: None,
+        ..meshless_interfaces::InterfaceLaw::new([0, 1])
     });
     setup
 }

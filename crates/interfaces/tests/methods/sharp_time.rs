@@ -52,7 +52,7 @@ fn nothing_grows_at_a_contact_of_any_contrast() {
             for seed in 1..=12 {
                 let setup = contact::<1>(wall.clone(), layout, h, seed, contrast);
                 let rows = sharp(order).discretize(&setup.problem()).unwrap();
-                let algebraic = Mass::of(&rows).unwrap().algebraic().count();
+                let algebraic = Mass::of(&setup.problem(), &rows).unwrap().algebraic().count();
                 let what = format!("1-D, order {order}, {contrast:e}, {layout:?}, spacing {h}, seed {seed}");
                 look(largest_growth(&setup, &rows, h, contrast), algebraic, what);
             }
@@ -65,7 +65,7 @@ fn nothing_grows_at_a_contact_of_any_contrast() {
             for (kind, shape, seed) in [("wall", &wall, 1), ("wall", &wall, 6), ("disc", &disc, 1)] {
                 let setup = contact::<2>(shape.clone(), layout, 0.11, seed, contrast);
                 let rows = sharp(4).discretize(&setup.problem()).unwrap();
-                let algebraic = Mass::of(&rows).unwrap().algebraic().count();
+                let algebraic = Mass::of(&setup.problem(), &rows).unwrap().algebraic().count();
                 let what = format!("2-D, {kind}, order 4, {contrast:e}, {layout:?}, seed {seed}");
                 look(largest_growth(&setup, &rows, 0.11, contrast), algebraic, what);
             }
@@ -123,7 +123,7 @@ fn initial_values_are_made_consistent() {
             }
         });
         rows.mass = Some(kept.unwrap());
-        let mass = Mass::of(&rows).unwrap();
+        let mass = Mass::of(&setup.problem(), &rows).unwrap();
         let given = |i: usize, x: &[f64; 2]| match rows.kinds[i] {
             RowKind::Dirichlet => x[0],
             _ => (i as f64 * 0.618).fract(),

@@ -7,7 +7,7 @@ use meshless_geometry::{
 };
 use meshless_interfaces::gfdm::{Gfdm, GfdmParams};
 use meshless_interfaces::{
-    BoundaryData, Condition, Discretization, Field, InterfaceJump, Material, Method, MethodError, Problem,
+    BoundaryData, Condition, Discretization, Field, InterfaceLaw, Material, Method, MethodError, Problem,
     SlitInterface, Supports, SystemSolution, solve,
 };
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
@@ -31,7 +31,7 @@ pub(crate) struct Setup<const D: usize> {
     source: Option<Vec<f64>>,
     condition: ConditionFn<D>,
     conditions: Vec<Vec<Condition>>,
-    pub(crate) jumps: Vec<InterfaceJump<D>>,
+    pub(crate) laws: Vec<InterfaceLaw<D>>,
     pub(crate) slits: Vec<SlitInterface<D>>,
 }
 
@@ -59,7 +59,7 @@ impl<const D: usize> Setup<D> {
             source: None,
             condition: Arc::new(|_, _| Condition::Dirichlet(0.0)),
             conditions: Vec::new(),
-            jumps: Vec::new(),
+            laws: Vec::new(),
             slits: Vec::new(),
         }
         .regions(vec![None], &[1.0])
@@ -86,7 +86,7 @@ impl<const D: usize> Setup<D> {
         self.regions = RegionMap::new(shapes).unwrap();
         self.labels = self.regions.labels(&self.cloud);
         self.eta = self.labels.iter().map(|&l| eta[l as usize]).collect();
-        let material = |&eta: &f64| Material { diffusivity: Field::Constant(eta), source: None };
+        let material = |&eta: &f64| Material::new(Field::Constant(eta));
         self.materials = eta.iter().map(material).collect();
         self
     }
@@ -129,8 +129,8 @@ impl<const D: usize> Setup<D> {
             source: self.source.as_deref(),
             conditions: &self.conditions,
             boundary: self,
-            jumps: &self.jumps,
-            jump_rates: &[],
+            laws: &self.laws,
+            law_rates: &[],
             slits: &self.slits,
         }
     }

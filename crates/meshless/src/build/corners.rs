@@ -4,7 +4,7 @@ use meshless_geometry::Size;
 use meshless_interfaces::{Corner, CornerData, Obstacle, corners};
 
 use super::shapes::spacing;
-use super::{Boundary, domain, jumps, materials, regions};
+use super::{Boundary, domain, laws, materials, regions};
 use crate::Error;
 use crate::scene::Scene;
 
@@ -37,7 +37,7 @@ pub(crate) fn singular_corners(scene: &Scene, order: usize) -> Result<Vec<Corner
 fn in_dimension<const D: usize>(scene: &Scene, order: usize) -> Result<Vec<Corner>, Error> {
     let (domain, regions) = (domain::<D>(scene)?, regions::<D>(scene)?);
     let boundary = Boundary::new(scene, &domain);
-    let (materials, jumps) = (materials::<D>(scene), jumps::<D>(scene));
+    let (materials, laws) = (materials::<D>(scene), laws::<D>(scene));
     let widest = CHANGES * domain.bounds().diameter();
     let spacing = scene.points.spacing.expr.as_constant().map_or(widest, |spacing| spacing.max(widest));
     let data = CornerData {
@@ -45,7 +45,7 @@ fn in_dimension<const D: usize>(scene: &Scene, order: usize) -> Result<Vec<Corne
         regions: &regions,
         materials: &materials,
         boundary: &boundary,
-        jumps: &jumps,
+        laws: &laws,
         spacing,
     };
     Ok(corners(&data, order))

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use meshless_expr::Expr;
-use meshless_interfaces::{Field, InterfaceJump, Material, ScalarField, SurfaceField};
+use meshless_interfaces::{Field, InterfaceLaw, Material, ScalarField, SurfaceField};
 
 use crate::Error;
 use crate::execute::Exact;
-use crate::scene::{ExprField, PointValues, Scene};
+use crate::scene::{ExprField, PointValues, RegionSpec, Scene};
 
 /// An expression with its derivatives, which are formed once.
 struct ExprScalar<const D: usize> {
@@ -42,10 +42,19 @@ pub(crate) fn materials<const D: usize>(scene: &Scene) -> Vec<Material<D>> {
         .regions
         .iter()
         .map(|r| Material {
-            diffusivity: field(&r.diffusivity.expr),
             source: r.source.as_ref().map(|s| field(&s.expr)),
+            capacity: r.capacity.as_ref().map(|c| field(&c.expr)),
+            velocity: velocity(r),
+            reaction: nonzero(&r.reaction),
+            ..Material::new(field(&r.diffusivity.expr))
         })
         .collect()
+}
+
+/// The velocity of a region, where it is not zero everywhere.
+fn velocity<const D: usize>(region: &RegionSpec) -> Option<[Field<D>; D]> {
+    let moves = region.velocity.iter().any(|component| component.expr.as_constant() != Some(0.0));
+    moves.then(|| std::array::from_fn(|axis| field(&region.velocity[axis].expr)))
 }
 
 /// Values at points, linear in between.
@@ -62,31 +71,32 @@ fn at_points<const D: usize>(given: &PointValues) -> Option<Field<D>> {
     field.ok().map(|field| Field::Function(Arc::new(field)))
 }
 
-/// The prescribed jumps that are not zero everywhere.
-pub(crate) fn jumps<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
+/// The laws of the interfaces at which something jumps.
+pub(crate) fn laws<const D: usize>(scene: &Scene) -> Vec<InterfaceLaw<D>> {
     scene
         .interfaces
         .iter()
-        .map(|i| InterfaceJump {
-            between: i.between.map(|r| r as u16),
+        .map(|i| InterfaceLaw {
             value: nonzero(&i.jump),
             flux: i.flux_jump_at.as_ref().map_or_else(|| nonzero(&i.flux_jump), at_points),
             prescribed: i.dirichlet.as_ref().map(|f| field(&f.expr)),
+            resistance: nonzero(&i.resistance),
+            partition: i.partition.as_ref().map_or([1.0; 2], |(partition, _)| *partition),
+            ..InterfaceLaw::new(i.between.map(|r| r as u16))
         })
-        .filter(|j| j.value.is_some() || j.flux.is_some() || j.prescribed.is_some())
+        .filter(|j| j.value.is_some() || j.flux.is_some() || j.prescribed.is_some() || j.is_imperfect())
         .collect()
 }
 
 /// How fast they change, in a scene as it is at one time.
-pub(crate) fn jump_rates<const D: usize>(scene: &Scene) -> Vec<InterfaceJump<D>> {
+pub(crate) fn law_rates<const D: usize>(scene: &Scene) -> Vec<InterfaceLaw<D>> {
     scene
         .interfaces
         .iter()
-        .map(|i| InterfaceJump {
-            between: i.between.map(|r| r as u16),
+        .map(|i| InterfaceLaw {
             value: nonzero(&i.rates[0]),
             flux: nonzero(&i.rates[1]),
-            prescribed: None,
+            ..InterfaceLaw::new(i.between.map(|r| r as u16))
         })
         .filter(|j| j.value.is_some() || j.flux.is_some())
         .collect()
@@ -118,6 +128,34 @@ pub(crate) fn nodal_diffusivity<const D: usize>(
         }
     }
     Ok(eta)
+}
+
+/// The coefficients of the equation beside the diffusivity are numbers at every node, and capacities positive.
+pub(crate) fn check_coefficients<const D: usize>(
+    scene: &Scene,
+    materials: &[Material<D>],
+    points: &[[f64; D]],
+    labels: &[u16],
+) -> Result<(), Error> {
+    for ((region, material), spec) in materials.iter().enumerate().zip(&scene.regions) {
+        let capacity = material.capacity.iter().zip(&spec.capacity);
+        let others = material.velocity.iter().flatten().zip(&spec.velocity);
+        let all = capacity.chain(others).chain(material.reaction.iter().zip(&spec.reaction));
+        for (k, (field, given)) in all.enumerate().filter(|(_, (field, _))| field.as_constant().is_none()) {
+            let of_region = points.iter().zip(labels).filter(|(_, label)| **label as usize == region);
+            for (x, value) in of_region.map(|(x, _)| (x, field.at(x))) {
+                if !value.is_finite() {
+                    return Err(not_finite(scene, given, value, x));
+                }
+                if k == 0 && spec.capacity.is_some() && value <= 0.0 {
+                    let message = format!("the capacity is {value} at {x:?}; it must be positive");
+                    let help = "it is what a unit of volume stores for a unit of u (rho c of a material)";
+                    return Err(scene.error_at(given, message, help).into());
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The source at every node, finite; zero in regions that have none.

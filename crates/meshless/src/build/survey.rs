@@ -1,7 +1,7 @@
 //! What can be told about a scene without a cloud.
 
 use super::corners::AtCorners;
-use super::fields::materials;
+use super::fields::{field, materials};
 use super::points::{estimated, file_points};
 use super::shapes::{check_level_sets, domain, regions};
 use crate::Error;
@@ -68,6 +68,43 @@ fn sampled_contrast_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
         (eta > 0.0 && eta.is_finite()).then_some(eta)
     });
     Ok(ratio(values))
+}
+
+/// The largest Péclet number `|v| h / eta` of a cell: of samples on a lattice.
+pub(crate) fn sampled_peclet(scene: &Scene) -> Result<f64, Error> {
+    match scene.dimension {
+        1 => sampled_peclet_in::<1>(scene),
+        2 => sampled_peclet_in::<2>(scene),
+        _ => sampled_peclet_in::<3>(scene),
+    }
+}
+
+fn sampled_peclet_in<const D: usize>(scene: &Scene) -> Result<f64, Error> {
+    let (domain, materials) = (domain::<D>(scene)?, materials::<D>(scene));
+    let regions = if scene.is_labelled() { None } else { Some(regions::<D>(scene)?) };
+    let spacing = field::<D>(&scene.points.spacing.expr);
+    let (bounds, count) = (domain.bounds(), SAMPLES_PER_AXIS[D - 1]);
+    let lengths = bounds.lengths();
+    let mut largest = 0.0_f64;
+    for index in 0..count.pow(D as u32) {
+        let x: [f64; D] = std::array::from_fn(|k| {
+            let along = (index / count.pow(k as u32)) % count;
+            bounds.min[k] + lengths[k] * along as f64 / (count - 1) as f64
+        });
+        if domain.level(&x) > 0.0 {
+            continue;
+        }
+        let own = regions.as_ref().map(|regions| regions.label(&x, 0.0) as usize);
+        for material in
+            materials.iter().enumerate().filter(|(k, _)| own.is_none_or(|own| own == *k)).map(|m| m.1)
+        {
+            let speed = material.velocity_at(&x).iter().map(|v| v * v).sum::<f64>().sqrt();
+            let peclet = speed * spacing.at(&x) / material.diffusivity.at(&x);
+            // What is no number is refused when the nodes are known, with its place in the scene.
+            largest = if peclet.is_finite() { largest.max(peclet) } else { largest };
+        }
+    }
+    Ok(largest)
 }
 
 fn ratio(values: impl Iterator<Item = f64>) -> f64 {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use meshless_geometry::{Cloud, Domain, RegionMap};
 use meshless_interfaces::phase_field::{PhaseFieldParams, regions_from_labels};
 use meshless_interfaces::{
-    BoundaryData, Condition, InterfaceJump, Material, MethodError, Problem, SlitInterface, Supports,
+    BoundaryData, Condition, InterfaceLaw, Material, MethodError, Problem, SlitInterface, Supports,
 };
 use meshless_neighbors::{Distance, NeighborLists, Radius, within_radius};
 
@@ -29,8 +29,8 @@ pub(crate) struct Discrete<const D: usize> {
     source: Option<Vec<f64>>,
     boundary: Boundary<D>,
     conditions: Vec<Vec<Condition>>,
-    jumps: Vec<InterfaceJump<D>>,
-    jump_rates: Vec<InterfaceJump<D>>,
+    laws: Vec<InterfaceLaw<D>>,
+    law_rates: Vec<InterfaceLaw<D>>,
     slits: Vec<SlitInterface<D>>,
 }
 
@@ -95,6 +95,7 @@ impl<const D: usize> Discrete<D> {
         }
         let materials = build::materials::<D>(scene);
         let eta = build::nodal_diffusivity(scene, &materials, cloud.points(), &labels)?;
+        build::check_coefficients(scene, &materials, cloud.points(), &labels)?;
         if plan.method.params.needs_smooth_diffusivity() {
             build::check_diffusivity_is_smooth(scene, &materials, &regions, &cloud, &labels, &lists, &eta)?;
         }
@@ -105,7 +106,7 @@ impl<const D: usize> Discrete<D> {
         let boundary = Boundary::new(scene, &domain);
         let conditions = boundary.at_nodes(scene, &domain, &cloud)?;
         boundary.check_is_met(scene, &domain, &cloud)?;
-        let (jumps, jump_rates) = (build::jumps::<D>(scene), build::jump_rates::<D>(scene));
+        let (laws, law_rates) = (build::laws::<D>(scene), build::law_rates::<D>(scene));
         let slits = build::slits(scene, &domain)?;
         seconds.stencils = start.elapsed().as_secs_f64();
         Ok(Self {
@@ -120,8 +121,8 @@ impl<const D: usize> Discrete<D> {
             source,
             boundary,
             conditions,
-            jumps,
-            jump_rates,
+            laws,
+            law_rates,
             slits,
         })
     }
@@ -131,14 +132,15 @@ impl<const D: usize> Discrete<D> {
         let (points, labels) = (self.cloud.points(), &self.labels);
         self.materials = build::materials::<D>(scene);
         self.eta = build::nodal_diffusivity(scene, &self.materials, points, labels)?;
+        build::check_coefficients(scene, &self.materials, points, labels)?;
         self.source = plan
             .runs(Stage::Source)
             .then(|| build::nodal_source(scene, &self.materials, points, labels))
             .transpose()?;
         self.boundary = Boundary::new(scene, &self.domain);
         self.conditions = self.boundary.at_nodes(scene, &self.domain, &self.cloud)?;
-        self.jumps = build::jumps::<D>(scene);
-        self.jump_rates = build::jump_rates::<D>(scene);
+        self.laws = build::laws::<D>(scene);
+        self.law_rates = build::law_rates::<D>(scene);
         self.slits = build::slits(scene, &self.domain)?;
         Ok(())
     }
@@ -163,8 +165,8 @@ impl<const D: usize> Discrete<D> {
             source: self.source.as_deref(),
             conditions: &self.conditions,
             boundary: &self.boundary as &dyn BoundaryData<D>,
-            jumps: &self.jumps,
-            jump_rates: &self.jump_rates,
+            laws: &self.laws,
+            law_rates: &self.law_rates,
             slits: &self.slits,
         }
     }

@@ -2,7 +2,9 @@
 
 use meshless_interfaces::sharp::Sharp;
 
-use super::effects::Survey;
+use super::choose::RESOLVED;
+use super::effects::{Effect, Survey};
+use super::knows;
 use crate::scene::{AccuracyOf, MethodName, Scene};
 
 /// An error to reach, and how far to go for it.
@@ -55,6 +57,10 @@ impl AccuracyPlan {
         if let Some(why) = survey.needs_balances(scene) {
             return choice(MethodName::GfdmConservative, None, why);
         }
+        if survey.has(|e| matches!(e, Effect::Advection { peclet } if *peclet > RESOLVED)) {
+            let why = "the velocity carries more than a cell conducts: upwind balances";
+            return choice(MethodName::GfdmConservative, None, why);
+        }
         // Fluxes take gradients up to interfaces.
         // Singular corners take functions of their own.
         if jumps && tolerance >= COARSE && !scene.output.fluxes && !survey.has_corners(scene) {
@@ -70,6 +76,9 @@ impl AccuracyPlan {
         }
         let high = scene.method.order.is_some_and(|order| order > 2 && Sharp::offers(order, scene.dimension));
         if jumps && (high || scene.output.fluxes) {
+            return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");
+        }
+        if jumps && !knows::all(MethodName::ParticleDifference, survey) {
             return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");
         }
         if jumps {

@@ -7,7 +7,7 @@ use meshless_sparse::{
 };
 
 use super::effects::{Effect, Survey};
-use super::{AccuracyPlan, MethodParams, MethodPlan, Skipped, Stage, method};
+use super::{AccuracyPlan, MethodParams, MethodPlan, Skipped, Stage, knows, method};
 use crate::Error;
 use crate::scene::{InterfacesName, MethodName, Scene, SolverName};
 
@@ -29,6 +29,9 @@ const TOLERANCE: f64 = 1e-11;
 
 /// Contrast above which a region may be stiff enough for its constant to be split off.
 pub(super) const FLOATING_CONTRAST: f64 = 10.0;
+
+/// Péclet number of a cell up to which fits and stencils resolve what a velocity makes.
+pub(super) const RESOLVED: f64 = 2.0;
 
 pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, Error> {
     let slits = survey.has(|e| matches!(e, Effect::Slits));
@@ -79,6 +82,14 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
             MethodName::Sharp,
             "the solution is singular at corners: functions of their own there".to_owned(),
         ),
+        (MethodName::Auto, None)
+            if survey.has(|e| matches!(e, Effect::Advection { peclet } if *peclet > RESOLVED)) =>
+        {
+            (
+                MethodName::GfdmConservative,
+                "the velocity carries more than a cell conducts: upwind balances".to_owned(),
+            )
+        }
         (MethodName::Auto, None) => {
             (MethodName::GfdmClassical, "nothing jumps: stencils everywhere".to_owned())
         }
@@ -89,6 +100,7 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     };
     let scene = &scene.with_order(order);
     method::check(name, scene)?;
+    knows::check(name, scene, survey)?;
     Ok(described(name, why, scene, survey))
 }
 
@@ -100,6 +112,8 @@ fn at_interfaces(scene: &Scene, survey: &Survey) -> (MethodName, &'static str) {
         (MethodName::GfdmHybrid, "interfaces are known to a share of the spacing only: balances there")
     } else if let Some(why) = survey.needs_balances(scene) {
         (MethodName::GfdmConservative, why)
+    } else if survey.has(|e| matches!(e, Effect::Advection { peclet } if *peclet > RESOLVED)) {
+        (MethodName::GfdmConservative, "the velocity carries more than a cell conducts: upwind balances")
     } else if scene.time.is_some() && !scene.output.fluxes || !offered(scene) {
         (MethodName::GfdmHybrid, "something jumps at an interface: balances there, stencils elsewhere")
     } else {
@@ -146,6 +160,15 @@ const STRONG_WITH_GHOSTS_IN_SPACE: f64 = 0.5;
 /// Stencils that cross interfaces without balances have such rows there only, which coarse levels must leave as they are.
 fn multigrid(method: MethodName, dimension: usize, survey: &Survey) -> MultigridParams {
     let chosen = MultigridParams::default();
+    if survey.has(|e| matches!(e, Effect::Advection { peclet } if *peclet > RESOLVED)) {
+        // Rows that look upstream: an incomplete factorisation in the order of the stream, and restrictions of their own.
+        return MultigridParams {
+            smoother: SmootherKind::Ilu0,
+            restriction: Restriction::Own,
+            candidate: Candidate::Constant,
+            ..chosen
+        };
+    }
     let jumps = survey.contrast > FLOATING_CONTRAST;
     match method {
         MethodName::GfdmClassical | MethodName::GfdmPositive if jumps => {
@@ -250,8 +273,13 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     decide(steps.selection, Stage::NodeSelection, "the method does not mix rows");
     decide(steps.may_need_cells, Stage::Cells, "no row is conservative");
     decide(true, Stage::Assembly, "");
-    let may_float = survey.contrast > FLOATING_CONTRAST;
-    decide(may_float, Stage::FloatingConstants, "no region is much stiffer than its neighbours");
+    let may_float =
+        survey.contrast > FLOATING_CONTRAST || survey.has(|e| matches!(e, Effect::ContactResistance));
+    decide(
+        may_float,
+        Stage::FloatingConstants,
+        "no region is much stiffer than its neighbours, or behind a film",
+    );
     decide(true, Stage::Solve, "");
     decide(scene.time.is_some(), Stage::TimeSteps, "the scene is steady");
     let fields = exact || scene.output.vtu || scene.output.csv;
@@ -280,6 +308,12 @@ pub(super) fn stages(scene: &Scene, survey: &Survey, method: &MethodPlan) -> (Ve
     absent(survey.has_interface(), "interface", "nothing jumps anywhere");
     absent(survey.has(|e| matches!(e, Effect::ValueJump)), "value jump", "none is given");
     absent(survey.has(|e| matches!(e, Effect::FluxJump)), "flux jump", "none is given");
+    let contact = |e: &Effect| matches!(e, Effect::ContactResistance | Effect::Partition);
+    absent(!survey.has_interface() || survey.has(contact), "contact", "regions are perfectly joined");
+    absent(survey.has(|e| matches!(e, Effect::Advection { .. })), "advection", "nothing moves");
+    absent(survey.has(|e| matches!(e, Effect::Reaction)), "reaction", "no region has one");
+    let capacity = scene.time.is_none() && scene.regions.iter().any(|r| r.capacity.is_some());
+    absent(!capacity, "capacity", "the scene is steady");
     absent(false, "free space", "the domain is bounded");
     (stages, skipped)
 }

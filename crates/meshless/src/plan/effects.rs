@@ -6,7 +6,7 @@ use meshless_interfaces::Obstacle;
 
 use crate::Error;
 use crate::build;
-use crate::scene::{ConditionSpec, ExprField, RegionSpec, Scene};
+use crate::scene::{ConditionSpec, ExprField, InterfaceSpec, RegionSpec, Scene};
 
 /// Order below which powers of the distance from a corner count, where the scene names none: that of the sharp method by default.
 const LEAST_ORDER: usize = 4;
@@ -47,6 +47,19 @@ pub enum Effect {
     PureNeumann,
     /// u changes with time.
     Time,
+    /// A factor of du/dt that is not 1.
+    Capacity,
+    /// A velocity carries u along; the largest Péclet number of a cell `|v| h / eta`, as far as sampled.
+    Advection {
+        /// The Péclet number.
+        peclet: f64,
+    },
+    /// A term in u itself.
+    Reaction,
+    /// An interface resists the flux through it, and u differs on its sides.
+    ContactResistance,
+    /// u over partition coefficients goes on across an interface, and not u.
+    Partition,
     /// Interfaces end inside the domain.
     Slits,
     /// The domain has holes.
@@ -74,7 +87,14 @@ pub enum Effect {
 impl Effect {
     /// Whether something jumps at an interface.
     pub fn is_at_interface(&self) -> bool {
-        matches!(self, Self::DiffusivityJump { .. } | Self::ValueJump | Self::FluxJump)
+        matches!(
+            self,
+            Self::DiffusivityJump { .. }
+                | Self::ValueJump
+                | Self::FluxJump
+                | Self::ContactResistance
+                | Self::Partition
+        )
     }
 
     /// The name used in reports.
@@ -92,6 +112,11 @@ impl Effect {
             Self::Robin => "robin boundary",
             Self::PureNeumann => "pure neumann",
             Self::Time => "time",
+            Self::Capacity => "capacity",
+            Self::Advection { .. } => "advection",
+            Self::Reaction => "reaction",
+            Self::ContactResistance => "contact resistance",
+            Self::Partition => "partition",
             Self::Slits => "slits",
             Self::Holes => "holes",
             Self::CurvedBoundary => "curved boundary",
@@ -106,6 +131,7 @@ impl fmt::Display for Effect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DiffusivityJump { contrast } => write!(f, "{} ({contrast:.3e})", self.name()),
+            Self::Advection { peclet } => write!(f, "{} (Péclet number of a cell {peclet:.3e})", self.name()),
             Self::Corners { count, exponent } => write!(f, "{} ({count}, u ~ r^{exponent:.3})", self.name()),
             Self::Triangles { count, degenerate: 0 } => write!(f, "{} ({count} triangles)", self.name()),
             Self::Triangles { count, degenerate } => {
@@ -157,11 +183,22 @@ impl Survey {
         note(any(|c| matches!(c, ConditionSpec::Neumann(_))), Effect::Neumann);
         note(any(|c| matches!(c, ConditionSpec::Flux(_))), Effect::Flux);
         note(any(|c| matches!(c, ConditionSpec::Robin { .. })), Effect::Robin);
+        let reacts = scene.regions.iter().any(|r| nonzero(r.reaction.as_ref()));
         note(
-            !any(|c| matches!(c, ConditionSpec::Dirichlet(_) | ConditionSpec::Robin { .. })),
+            !reacts && !any(|c| matches!(c, ConditionSpec::Dirichlet(_) | ConditionSpec::Robin { .. })),
             Effect::PureNeumann,
         );
         note(scene.time.is_some(), Effect::Time);
+        let stores = |r: &RegionSpec| r.capacity.as_ref().is_some_and(|c| c.expr.as_constant() != Some(1.0));
+        note(scene.time.is_some() && scene.regions.iter().any(stores), Effect::Capacity);
+        let moves = |r: &RegionSpec| r.velocity.iter().any(|component| nonzero(Some(component)));
+        if scene.regions.iter().any(moves) {
+            note(true, Effect::Advection { peclet: build::sampled_peclet(&scene.at_time(0.0))? });
+        }
+        note(scene.regions.iter().any(|r| nonzero(r.reaction.as_ref())), Effect::Reaction);
+        note(scene.interfaces.iter().any(|i| nonzero(i.resistance.as_ref())), Effect::ContactResistance);
+        let parts = |i: &InterfaceSpec| i.partition.as_ref().is_some_and(|([a, b], _)| a != b);
+        note(scene.interfaces.iter().any(parts), Effect::Partition);
         note(!scene.slits.is_empty(), Effect::Slits);
         note(!scene.holes.is_empty(), Effect::Holes);
         note(build::is_curved(scene), Effect::CurvedBoundary);
@@ -186,14 +223,21 @@ impl Survey {
         self.effects.iter().any(test)
     }
 
-    /// Whether there are corners that functions can serve: those of a steady scene in the plane.
+    /// Whether the equation is that of steady diffusion: functions of corners solve no other, and balances of fits are of no other.
+    pub(super) fn is_steady_diffusion(&self, scene: &Scene) -> bool {
+        scene.time.is_none() && !self.has(|e| matches!(e, Effect::Advection { .. } | Effect::Reaction))
+    }
+
+    /// Whether there are corners that functions can serve: those of steady diffusion in the plane.
     pub(super) fn has_corners(&self, scene: &Scene) -> bool {
-        scene.dimension == 2 && scene.time.is_none() && self.has(|e| matches!(e, Effect::Corners { .. }))
+        scene.dimension == 2
+            && self.is_steady_diffusion(scene)
+            && self.has(|e| matches!(e, Effect::Corners { .. }))
     }
 
     /// Whether the sharp method has functions for some of the corners, or edges in space, of a steady scene.
     pub(super) fn has_corner_functions(&self, scene: &Scene) -> bool {
-        scene.time.is_none() && (self.has_corners(scene) || self.servable)
+        self.is_steady_diffusion(scene) && (self.has_corners(scene) || self.servable)
     }
 
     /// Why fits would lose heat at the interfaces of a scene of no order in particular, so that it takes balances everywhere; `None` where they
@@ -207,10 +251,16 @@ impl Survey {
             Some(
                 "fits lose heat at edges of interfaces of triangles, for which they have no functions: balances everywhere",
             )
-        } else if scene.time.is_some() && self.has(singular) {
+        } else if !self.is_steady_diffusion(scene) && self.has(singular) {
             Some(
-                "corners at interfaces lose heat where fits meet them, and have functions of their own in steady scenes only: \
+                "corners at interfaces lose heat where fits meet them, and have functions of their own in steady diffusion only: \
                  balances everywhere",
+            )
+        } else if self.has(|e| matches!(e, Effect::ContactResistance | Effect::Partition))
+            && self.has(singular)
+        {
+            Some(
+                "corners at which u differs on both sides of an interface have no functions: balances everywhere",
             )
         } else {
             None

@@ -8,6 +8,7 @@ mod choose;
 mod effects;
 mod fallback;
 mod free_space;
+mod knows;
 mod method;
 mod predict;
 mod show;

@@ -1,11 +1,12 @@
 //! `[[boundaries]]`.
 
 use super::error::SceneError;
+use super::expression::ExprField;
 use super::reader::{Table, Value};
 use super::spec::{ALL_FACES, BoundarySpec, ConditionSpec, DomainSpec, HoleSpec};
 
 /// Keys that say a condition; an entry has exactly one of them.
-const CONDITIONS: [&str; 4] = ["dirichlet", "neumann", "flux", "robin"];
+const CONDITIONS: [&str; 5] = ["dirichlet", "neumann", "flux", "robin", "convection"];
 
 pub(super) fn boundaries(
     root: &Table<'_>,
@@ -13,7 +14,7 @@ pub(super) fn boundaries(
     holes: &[HoleSpec],
 ) -> Result<Vec<BoundarySpec>, SceneError> {
     const HELP: &str = "give conditions for every face: [[boundaries]] with `face` and one of dirichlet, \
-                        neumann, flux, robin";
+                        neumann, flux, robin, convection";
     let outer = domain.faces(root.dimension).iter().copied();
     let faces: Vec<(&str, ())> = outer
         .chain(holes.iter().map(|hole| hole.name.as_str()))
@@ -29,7 +30,7 @@ pub(super) fn boundaries(
 }
 
 fn boundary(table: Table<'_>, faces: &[(&str, ())]) -> Result<BoundarySpec, SceneError> {
-    table.allow(&["face", "where", "dirichlet", "neumann", "flux", "robin"])?;
+    table.allow(&["face", "where", "dirichlet", "neumann", "flux", "robin", "convection"])?;
     let face = table.require("face")?;
     face.one_of(faces)?;
     Ok(BoundarySpec {
@@ -51,6 +52,7 @@ fn condition(table: &Table<'_>) -> Result<ConditionSpec, SceneError> {
             Err(table.require(second)?.error(message, "a mixed condition is written with `robin`"))
         }
         ["robin"] => robin(&table.require("robin")?),
+        ["convection"] => convection(&table.require("convection")?),
         [key] => {
             let field = table.require(key)?.data_expression()?;
             Ok(match key {
@@ -71,4 +73,18 @@ pub(super) fn robin(value: &Value<'_>) -> Result<ConditionSpec, SceneError> {
         return Err(b.place.error(message, "prescribe u with `dirichlet`"));
     }
     Ok(ConditionSpec::Robin { a, b, g })
+}
+
+/// Exchange with surroundings that have a value of their own, `eta du/dn = h (ambient - u)`.
+fn convection(value: &Value<'_>) -> Result<ConditionSpec, SceneError> {
+    let table = value.subtable(&["h", "ambient"])?;
+    let (h, ambient) = (table.require("h")?.data_expression()?, table.require("ambient")?.data_expression()?);
+    if let Some(given) = h.as_constant().filter(|h| *h < 0.0) {
+        let help = "eta du/dn = h (ambient - u): a negative h would take heat out of what is colder";
+        return Err(h
+            .place
+            .error(format!("expected a coefficient that is not negative, found {given}"), help));
+    }
+    let (b, g) = (ExprField::constant(1.0, &value.place), value.product(&h, &ambient)?);
+    Ok(ConditionSpec::Robin { a: h, b, g })
 }

@@ -89,6 +89,16 @@ impl Value<'_> {
         self.expression_of(Variables { dimension: self.dimension, time: self.unsteady })
     }
 
+    /// The product of two expressions that are parts of this value.
+    pub(super) fn product(&self, a: &ExprField, b: &ExprField) -> Result<ExprField, SceneError> {
+        let factor = |field: &ExprField| match field.as_constant() {
+            Some(value) => format!("({value:e})"),
+            None => format!("({})", field.text),
+        };
+        let text = format!("{}*{}", factor(a), factor(b));
+        parse(&text, &self.place, Variables { dimension: self.dimension, time: self.unsteady })
+    }
+
     fn expression_of(&self, variables: Variables) -> Result<ExprField, SceneError> {
         if let Some(number) = self.as_number() {
             let text = self.place.text().to_owned();

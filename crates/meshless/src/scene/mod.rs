@@ -14,6 +14,7 @@ mod boundaries;
 mod domain;
 mod error;
 mod expression;
+mod fields;
 mod free_space;
 mod method;
 mod options;
@@ -83,7 +84,7 @@ pub struct Scene {
     /// Materials; a point belongs to the first region that contains it. At least one; names are distinct, and the
     /// last region, and only it, is without geometry.
     pub regions: Vec<RegionSpec>,
-    /// Prescribed jumps, at most one entry for each pair of regions.
+    /// What holds across interfaces beside that u and its flux go on, at most one entry for each pair of regions.
     pub interfaces: Vec<InterfaceSpec>,
     /// Interfaces that end inside the domain; names are distinct, and 2-D only.
     pub slits: Vec<SlitSpec>,

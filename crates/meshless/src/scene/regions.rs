@@ -7,6 +7,7 @@ use super::expression::ExprField;
 use super::free_space;
 use super::reader::{Table, Value};
 use super::shapes::{SHAPE_KEYS, keys_with_shape, optional_shape};
+use super::source::Place;
 use super::spec::{InterfaceSpec, PointValues, RegionSpec};
 
 /// Most regions of a scene; nodes carry the index of theirs in 16 bits.
@@ -54,17 +55,43 @@ pub(super) fn regions(root: &Table<'_>) -> Result<Vec<RegionSpec>, SceneError> {
 }
 
 fn region(table: &Table<'_>, open: bool) -> Result<RegionSpec, SceneError> {
-    table.allow(&keys_with_shape(&["name", "label", "diffusivity", "source", "vorticity", "exact"]))?;
+    table.allow(&keys_with_shape(&[
+        "name",
+        "label",
+        "diffusivity",
+        "source",
+        "capacity",
+        "velocity",
+        "reaction",
+        "vorticity",
+        "exact",
+    ]))?;
+    let data = |key: &str| table.get(key).map(|value| value.data_expression()).transpose();
     Ok(RegionSpec {
         name: table.require("name")?.name()?,
         label: table.get("label").map(|value| label(&value)).transpose()?,
         geometry: optional_shape(table)?,
         diffusivity: table.require("diffusivity")?.data_expression()?.check_positive()?,
-        source: table.get("source").map(|value| value.data_expression()).transpose()?,
-        exact: table.get("exact").map(|value| value.data_expression()).transpose()?,
+        source: data("source")?,
+        capacity: data("capacity")?.map(ExprField::check_positive).transpose()?,
+        velocity: velocity(table)?,
+        reaction: data("reaction")?,
+        exact: data("exact")?,
         vorticity: vorticity(table, open)?,
         place: table.place.clone(),
     })
+}
+
+/// An expression for each axis.
+fn velocity(table: &Table<'_>) -> Result<Vec<ExprField>, SceneError> {
+    let Some(value) = table.get("velocity") else { return Ok(Vec::new()) };
+    let axes = value.dimension;
+    let help = format!("give {axes} numbers or expressions in brackets, one for each axis");
+    let components = value.items().map_err(|_| value.expected("an array", &help))?;
+    if components.len() != axes {
+        return Err(value.error(format!("expected {axes} components, found {}", components.len()), help));
+    }
+    components.iter().map(Value::data_expression).collect()
 }
 
 /// An expression in the plane, one for each direction in space.
@@ -117,7 +144,15 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
     let mut interfaces = Vec::new();
     let mut pairs = HashSet::new();
     for table in root.tables("interfaces")? {
-        table.allow(&["between", "jump", "flux_jump", "flux_jump_at", "dirichlet"])?;
+        table.allow(&[
+            "between",
+            "resistance",
+            "partition",
+            "jump",
+            "flux_jump",
+            "flux_jump_at",
+            "dirichlet",
+        ])?;
         let value = table.require("between")?;
         let between = pair(&value, regions)?;
         if !pairs.insert([between[0].min(between[1]), between[0].max(between[1])]) {
@@ -125,6 +160,8 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
         }
         interfaces.push(InterfaceSpec {
             between,
+            resistance: resistance(&table)?,
+            partition: table.get("partition").map(|value| partition(&value)).transpose()?,
             jump: table.get("jump").map(|value| value.data_expression()).transpose()?,
             flux_jump: table.get("flux_jump").map(|value| value.data_expression()).transpose()?,
             flux_jump_at: flux_jump_at(&table)?,
@@ -136,10 +173,34 @@ pub(super) fn interfaces(root: &Table<'_>, regions: &[RegionSpec]) -> Result<Vec
     Ok(interfaces)
 }
 
+/// An expression of position that is not negative where it is constant.
+fn resistance(table: &Table<'_>) -> Result<Option<ExprField>, SceneError> {
+    let Some(value) = table.get("resistance") else { return Ok(None) };
+    let field = value.expression()?;
+    match field.as_constant() {
+        Some(given) if given < 0.0 => {
+            let help = "u rises by the resistance times the flux `eta du/dn`; a negative one would drive heat by itself";
+            Err(value.error(format!("expected a resistance that is not negative, found {given}"), help))
+        }
+        _ => Ok(Some(field)),
+    }
+}
+
+/// Two positive numbers.
+fn partition(value: &Value<'_>) -> Result<([f64; 2], Place), SceneError> {
+    const HELP: &str =
+        "give the two coefficients in the order of `between`: u_A / K_A and u_B / K_B are what is equal";
+    let items = value.items().map_err(|_| value.expected("an array of two positive numbers", HELP))?;
+    let [first, second] = &items[..] else {
+        return Err(value.error(format!("expected 2 coefficients, found {}", items.len()), HELP));
+    };
+    Ok(([first.positive()?, second.positive()?], value.place.clone()))
+}
+
 /// u on the interface, in place of jumps.
 fn dirichlet(table: &Table<'_>) -> Result<Option<ExprField>, SceneError> {
     let Some(value) = table.get("dirichlet") else { return Ok(None) };
-    if ["jump", "flux_jump", "flux_jump_at"].iter().any(|key| table.has(key)) {
+    if ["jump", "flux_jump", "flux_jump_at", "resistance", "partition"].iter().any(|key| table.has(key)) {
         let help = "u is prescribed on both sides, and the flux jumps by what that takes: remove the jumps";
         return Err(value.error("an interface has either `dirichlet` or jumps", help));
     }

@@ -196,6 +196,12 @@ pub struct RegionSpec {
     pub diffusivity: ExprField,
     /// The source f; none is zero.
     pub source: Option<ExprField>,
+    /// The factor of du/dt, positive where it is constant; none is 1. Steady scenes do not use it.
+    pub capacity: Option<ExprField>,
+    /// The velocity that carries u along, an expression for each axis; none where it is zero.
+    pub velocity: Vec<ExprField>,
+    /// The factor of u in the equation; none is zero.
+    pub reaction: Option<ExprField>,
     /// The exact solution, where it is known.
     pub exact: Option<ExprField>,
     /// In free space, the curl of the velocity: one expression in 2-D, three in 3-D, none where it is zero.
@@ -204,12 +210,17 @@ pub struct RegionSpec {
     pub place: Place,
 }
 
-/// What jumps at the interface of two regions besides eta.
+/// What holds across the interface of two regions besides that eta jumps: `u_B / K_B - u_A / K_A = jump + resistance q_A` with
+/// `q = eta du/dn`, and `q_B - q_A = flux_jump`.
 #[derive(Debug, Clone)]
 pub struct InterfaceSpec {
     /// Indices of two different regions A and B, as the scene names them; the normal points from A to B.
     pub between: [usize; 2],
-    /// `u_B - u_A`; none is zero.
+    /// The resistance to a flux through the interface, not negative where it is constant; none is zero.
+    pub resistance: Option<ExprField>,
+    /// The partition coefficients `K_A` and `K_B`, positive, and the value in the file; none is 1 and 1.
+    pub partition: Option<([f64; 2], Place)>,
+    /// `u_B / K_B - u_A / K_A` where nothing flows; none is zero.
     pub jump: Option<ExprField>,
     /// `(eta du/dn)_B - (eta du/dn)_A`; none is zero.
     pub flux_jump: Option<ExprField>,

@@ -3,14 +3,14 @@
 use super::Scene;
 use super::error::SceneError;
 use super::expression::ExprField;
+use super::fields::{Role, each, each_mut};
 use super::reader::Table;
 use super::source::Place;
-use super::spec::{BoundarySpec, ConditionSpec, InterfaceSpec, RegionSpec, SlitConditionSpec};
 
 /// Tolerance of a scene that gives none.
 const DEFAULT_TOLERANCE: f64 = 1e-4;
 
-/// How u changes with time, `du/dt - div(eta grad u) = f`, from 0 to `end`.
+/// How u changes with time, `capacity du/dt - div(eta grad u) = f`, from 0 to `end`.
 #[derive(Debug, Clone)]
 pub struct TimeSpec {
     /// The end, positive.
@@ -28,7 +28,7 @@ pub struct TimeSpec {
 /// What has to be made anew when time goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Varying {
-    /// The matrix: the diffusivity, or a coefficient of a Robin condition.
+    /// The matrix: the diffusivity or another coefficient of the equation, or one of a Robin condition.
     pub(crate) matrix: bool,
     /// The right-hand side: a source, a boundary value, a jump; or the matrix.
     pub(crate) data: bool,
@@ -68,86 +68,56 @@ impl Scene {
     /// The scene as it is at one time: its data do not depend on `t` any more.
     pub(crate) fn at_time(&self, t: f64) -> Self {
         let d = self.dimension;
-        let at = |field: &ExprField| field.at_time(d, t);
         let mut scene = self.clone();
-        for RegionSpec { diffusivity, source, exact, .. } in &mut scene.regions {
-            *diffusivity = at(diffusivity);
-            [source, exact].into_iter().flatten().for_each(|field| *field = at(field));
+        for interface in &mut scene.interfaces {
+            interface.rates =
+                [&interface.jump, &interface.flux_jump].map(|field| field.as_ref()?.rate_at_time(d, t));
         }
-        for InterfaceSpec { jump, flux_jump, rates, .. } in &mut scene.interfaces {
-            *rates = [&*jump, &*flux_jump].map(|field| field.as_ref()?.rate_at_time(d, t));
-            [jump, flux_jump].into_iter().flatten().for_each(|field| *field = at(field));
-        }
-        let condition_at = |condition: &mut ConditionSpec| match condition {
-            ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => *f = at(f),
-            ConditionSpec::Robin { a, b, g } => [a, b, g].into_iter().for_each(|f| *f = at(f)),
-        };
-        for slit in &mut scene.slits {
-            match &mut slit.condition {
-                SlitConditionSpec::Jump { jump, flux_jump } => {
-                    [jump, flux_jump].into_iter().flatten().for_each(|field| *field = at(field));
-                }
-                SlitConditionSpec::OnEachSide(condition) => condition_at(condition),
-            }
-        }
-        for BoundarySpec { condition, .. } in &mut scene.boundaries {
-            condition_at(condition);
-        }
+        each_mut(&mut scene, &mut |_, field| *field = field.at_time(d, t));
         scene
     }
 
     /// What changes with time.
     pub(crate) fn varying(&self) -> Varying {
-        let [matrix, data] =
-            self.data().map(|fields| fields.iter().any(|f| f.varies_in_time(self.dimension)));
-        Varying { matrix, data: data || matrix }
+        let changing = self.changing();
+        let any = |role: Role| changing.iter().any(|(of, _)| *of == role);
+        Varying { matrix: any(Role::Matrix), data: any(Role::Matrix) || any(Role::Data) }
     }
 
     /// The expressions that depend on `t`, but for exact solutions.
     pub(crate) fn changing_data(&self) -> Vec<&ExprField> {
-        self.data().into_iter().flatten().filter(|f| f.varies_in_time(self.dimension)).collect()
+        self.changing().into_iter().map(|(_, field)| field).collect()
+    }
+
+    fn changing(&self) -> Vec<(Role, &ExprField)> {
+        let mut found = Vec::new();
+        each(self, &mut |role, field| {
+            if role != Role::Exact && field.varies_in_time(self.dimension) {
+                found.push((role, field));
+            }
+        });
+        found
     }
 
     /// What is other than in the same scene at another time; both at one time each.
     pub(crate) fn differs_from(&self, other: &Self) -> Varying {
-        let [matrix, data] = [0, 1].map(|k| {
-            let (ours, theirs) = (&self.data()[k], &other.data()[k]);
-            ours.iter().zip(theirs).any(|(a, b)| !a.expr.is_same(&b.expr))
+        let all = |scene: &Self, of: Role| {
+            let mut found = Vec::new();
+            each(scene, &mut |role, field| {
+                if role == of {
+                    found.push(field.expr.clone());
+                }
+            });
+            if of == Role::Data {
+                let rates = scene.interfaces.iter().flat_map(|interface| interface.rates.iter().flatten());
+                found.extend(rates.map(|field| field.expr.clone()));
+            }
+            found
+        };
+        let [matrix, data] = [Role::Matrix, Role::Data].map(|role| {
+            let (ours, theirs) = (all(self, role), all(other, role));
+            ours.iter().zip(&theirs).any(|(a, b)| !a.is_same(b))
         });
         Varying { matrix, data: data || matrix }
-    }
-
-    /// Expressions that make the matrix, and those that make the right-hand side only.
-    fn data(&self) -> [Vec<&ExprField>; 2] {
-        let (mut matrix, mut data) = (Vec::new(), Vec::new());
-        for region in &self.regions {
-            matrix.push(&region.diffusivity);
-            data.extend(&region.source);
-        }
-        for interface in &self.interfaces {
-            data.extend([&interface.jump, &interface.flux_jump].into_iter().flatten());
-            data.extend(interface.rates.iter().flatten());
-        }
-        let mut conditions: Vec<&ConditionSpec> = self.boundaries.iter().map(|b| &b.condition).collect();
-        for slit in &self.slits {
-            match &slit.condition {
-                SlitConditionSpec::Jump { jump, flux_jump } => {
-                    data.extend([jump, flux_jump].into_iter().flatten());
-                }
-                SlitConditionSpec::OnEachSide(condition) => conditions.push(condition),
-            }
-        }
-        for condition in conditions {
-            match condition {
-                ConditionSpec::Dirichlet(f) | ConditionSpec::Neumann(f) | ConditionSpec::Flux(f) => {
-                    data.push(f);
-                }
-                ConditionSpec::Robin { a, b, g } => {
-                    matrix.extend([a, b]);
-                    data.push(g);
-                }
-            }
-        }
-        [matrix, data]
     }
 }

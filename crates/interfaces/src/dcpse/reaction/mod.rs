@@ -44,7 +44,7 @@ pub struct SurfaceReaction {
 impl<const D: usize> Method<D> for SurfaceReaction {
     fn discretize(&self, problem: &Problem<'_, D>) -> Result<Discretization, MethodError> {
         problem.check()?;
-        if problem.jumps.iter().any(|jump| jump.value.is_some()) {
+        if problem.laws.iter().any(|jump| jump.value.is_some()) {
             return Err(MethodError::Unsupported {
                 method: "surface-reaction",
                 what: "prescribe a jump of u",
@@ -226,7 +226,7 @@ impl<const D: usize> Rows<'_, D> {
 
     /// What jumps of the flux add to `div(sigma grad u)` at a node: `b delta`.
     fn reaction(&self, i: usize) -> f64 {
-        let jumps = self.problem.jumps.iter().filter_map(|j| Some((j.between, j.flux.as_ref()?)));
+        let jumps = self.problem.laws.iter().filter_map(|j| Some((j.between, j.flux.as_ref()?)));
         jumps
             .map(|([a, b], flux)| {
                 let x = &self.problem.cloud.points()[i];

@@ -62,7 +62,7 @@ impl<'a, const D: usize> JointFit<'a, D> {
         let sides = &scratch.sides;
         let given: f64 = slope.iter().zip(&sides.shifts).map(|(c, shift)| c * shift).sum();
         let [first, second] = point.between;
-        let flux = problem.jump_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
+        let flux = problem.law_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
         let mut row = ExtendedRow { rhs: factor * given, ..ExtendedRow::default() };
         row.nodes.extend(sides.kept.iter().zip(&slope).map(|(&j, &c)| (j, factor * c)));
         row.nodes.push((node as u32, -factor * slope.iter().sum::<f64>()));

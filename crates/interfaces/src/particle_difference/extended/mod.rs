@@ -85,6 +85,7 @@ impl<const D: usize> Method<D> for ParticleDifferenceExtended {
             rhs: all.iter().map(|row| row.rhs).collect(),
             constants: None,
             mass: None,
+            capacities: None,
             kinds,
             volumes: (0..nodes).map(|i| problem.cloud.spacing()[i].powi(D as i32)).collect(),
             counts,

@@ -40,7 +40,7 @@ pub(super) struct InterfacePoints<const D: usize> {
 
 /// Distance of points on the interface between two regions, over the spacing.
 pub(super) fn separation<const D: usize>(problem: &Problem<'_, D>, between: &[u16; 2]) -> f64 {
-    match problem.jump_between(between[0], between[1]) {
+    match problem.law_between(between[0], between[1]) {
         Some((jump, _)) if jump.prescribed.is_some() => WIDE_SEPARATION,
         _ => SEPARATION,
     }

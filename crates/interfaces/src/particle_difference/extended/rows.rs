@@ -228,7 +228,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
     pub(super) fn point(&self, k: usize, scratch: &mut Scratch<'a, D>) -> Result<ExtendedRow, MethodError> {
         let (problem, point) = (self.problem, self.points.list[k]);
         let [first, second] = point.between;
-        if let Some((jump, _)) = problem.jump_between(first, second)
+        if let Some((jump, _)) = problem.law_between(first, second)
             && let Some(u) = &jump.prescribed
         {
             return self.value_at_point(k, u.at(&point.at), scratch);
@@ -237,7 +237,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             return joint.row(k as u32, &point, scratch);
         }
         let eta = point.between.map(|l| problem.materials[l as usize].diffusivity.at(&point.at));
-        let flux = problem.jump_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
+        let flux = problem.law_between(first, second).and_then(|(jump, _)| jump.flux.as_ref());
         let h = problem.cloud.spacing()[point.node];
         let sum = eta[0] + eta[1];
         let mut row = ExtendedRow::default();
@@ -354,7 +354,7 @@ impl<'a, const D: usize> RowMaker<'a, D> {
             let h = problem.cloud.spacing()[centre.node];
             let reach = [separation(problem, &between), h];
             self.points.interpolate(between, &at, &normal, reach, -factor * c * distance, &mut row.jumps);
-            if let Some((jump, sign)) = problem.jump_between(centre.region, label)
+            if let Some((jump, sign)) = problem.law_between(centre.region, label)
                 && let Some(value) = &jump.value
             {
                 given -= factor * c * sign * value.at(&at);

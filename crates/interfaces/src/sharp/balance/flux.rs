@@ -178,7 +178,7 @@ impl<const D: usize> Maker<'_, D> {
             flux.add_value(nodes[1], conductance * scales[1]);
         }
         self.add_sum(&mut flux, scratch);
-        let jump = self.problem.jump_between(labels[0], labels[1]).filter(|_| crosses);
+        let jump = self.problem.law_between(labels[0], labels[1]).filter(|_| crosses);
         if let Some(field) = jump.and_then(|(jump, _)| jump.flux.as_ref()) {
             let jump: f64 = face.points.iter().map(|point| point.weight * field.at(&point.at)).sum();
             flux.known[1 - softer] += if softer == 0 { jump } else { -jump };
@@ -186,7 +186,7 @@ impl<const D: usize> Maker<'_, D> {
         Some(flux)
     }
 
-    /// `|f| / (d_i / eta_i + d_j / eta_j)`: what a difference of 1 between two nodes drives through their face.
+    /// `|f| / (d_i / eta_i + d_j / eta_j + R)`: what a difference of 1 between two nodes drives through their face.
     fn conductance(&self, face: &Face<D>, other: u32) -> f64 {
         let nodes = [face.node, other].map(|j| j as usize);
         let points = self.problem.cloud.points();
@@ -197,7 +197,10 @@ impl<const D: usize> Maker<'_, D> {
             false => [0.5 * distance(x, y); 2],
         };
         let eta = nodes.map(|j| self.problem.eta[j]);
-        face.area / (ways[0] / eta[0] + ways[1] / eta[1])
+        let labels = nodes.map(|j| self.problem.labels[j]);
+        let law = self.problem.law_between(labels[0], labels[1]).filter(|_| labels[0] != labels[1]);
+        let film = law.map_or(0.0, |(law, sign)| law.at(sign, &face.middle).resistance);
+        face.area / (ways[0] / eta[0] + ways[1] / eta[1] + film)
     }
 
     /// What a boundary lets through: what is prescribed, or where the value is, the gradient of the fit.
@@ -299,7 +302,7 @@ impl<const D: usize> Maker<'_, D> {
         let uniform = stencil.parts.iter().all(|&part| scale(part) == scale(stencil.parts[0]));
         let exchanges = |&j: &u32| self.boundary_rows[j as usize].iter().any(|row| row.exchange != 0.0);
         let held = stencil.vertex.is_some_and(|vertex| self.vertices.get(vertex).is_held());
-        if held || !uniform || stencil.nodes.iter().any(exchanges) {
+        if held || !uniform || !self.keeps_constants || stencil.nodes.iter().any(exchanges) {
             flux.sum = flux.values.iter().map(|(_, factor)| factor).sum();
         }
     }

@@ -46,7 +46,7 @@ pub(super) fn replace<const D: usize>(
         } && !holds(maker, row.node);
     }
     // In time a row has a mass that belongs to its collocation.
-    if D == 1 || maker.rates.is_some() || !wanted.contains(&true) {
+    if !maker.may_balance() || !wanted.contains(&true) {
         return Ok(Vec::new());
     }
     let faces = Faces::find(maker, &wanted)?;

@@ -41,6 +41,8 @@ pub(crate) struct Ledger<const D: usize> {
     surfaces: Surfaces<D>,
     sources: Vec<Content>,
     stored: Option<Vec<Content>>,
+    bodies: Vec<Body<D>>,
+    measures: Vec<f64>,
     names: Vec<String>,
     entries: Vec<String>,
     boundary: Boundary<D>,
@@ -57,6 +59,8 @@ pub(crate) struct Flows {
     /// What is stored as cells have it, where the fluxes are those of cells; and the sources, where nothing else tells the regions.
     stored: Option<Vec<Content>>,
     sources: Option<Vec<Content>>,
+    /// What the reaction takes up and what the velocity carries away, region by region; `None` where the equation has neither.
+    taken: Option<Vec<[Content; 2]>>,
 }
 
 /// What enters a region.
@@ -89,21 +93,23 @@ impl<const D: usize> Ledger<D> {
         let surfaces = Surfaces::new(&problem, &boundary, shared)?;
         let measures = solved.discrete.measures();
         let bodies = Body::all(&problem, &surfaces, &measures);
-        let own = |label: usize, values: &[f64]| -> Vec<(f64, f64)> {
-            let all = problem.labels.iter().zip(&measures).zip(values);
-            all.filter(|((l, _), _)| **l as usize == label).map(|((_, m), v)| (*m, *v)).collect()
-        };
+        let own = |label: usize, values: &[f64]| of_region(&problem, &measures, label, values);
         let source =
             |(label, body): (usize, &Body<D>)| match (&problem.materials[label].source, problem.source) {
                 (Some(field), Some(nodal)) => body.source(field, || body.nodal(&own(label, nodal))),
                 _ => Content::default(),
             };
         let stored = |rates: &Vec<f64>| -> Vec<Content> {
+            let rates: Vec<f64> =
+                rates.iter().enumerate().map(|(i, rate)| problem.capacity(i) * rate).collect();
+            let rates = &rates;
             bodies.iter().enumerate().map(|(label, body)| body.nodal(&own(label, rates))).collect()
         };
         Ok(Self {
             sources: bodies.iter().enumerate().map(source).collect(),
             stored: solved.system.rates.as_ref().map(stored),
+            bodies,
+            measures,
             surfaces,
             boundary,
             names: scene.regions.iter().map(|region| region.name.clone()).collect(),
@@ -123,7 +129,8 @@ impl<const D: usize> Ledger<D> {
             return Ok(self.of_cells(problem, system, &cells));
         }
         let found = samples(method, problem, system, &self.places())?;
-        Ok(self.summed(problem, (&system.u, &system.interface_flows), &found))
+        let flows = self.summed(problem, (&system.u, &system.interface_flows), &found);
+        Ok(Flows { taken: self.taken(method, problem, system)?, ..flows })
     }
 
     /// The same in another way, for a solution of which nodal values are all that is known; `None` for others.
@@ -138,7 +145,28 @@ impl<const D: usize> Ledger<D> {
             return Ok(None);
         }
         let found = by_fits(&Sampler::of_degree(problem, &system.u, OTHER_DEGREE)?, &self.places())?;
-        Ok(Some(self.summed(problem, (&system.u, &[]), &found)))
+        let flows = self.summed(problem, (&system.u, &[]), &found);
+        Ok(Some(Flows { taken: self.taken(method, problem, system)?, ..flows }))
+    }
+
+    /// The integrals of `reaction u` and of `velocity . grad u` over the regions, from the nodes.
+    fn taken(
+        &self,
+        method: &MethodParams,
+        problem: &Problem<'_, D>,
+        system: &SystemSolution,
+    ) -> Result<Option<Vec<[Content; 2]>>, Error> {
+        if !problem.has_lower_terms() {
+            return Ok(None);
+        }
+        let gradients = method.build().gradient_of(problem, system)?;
+        let reacted: Vec<f64> = system.u.iter().enumerate().map(|(i, u)| problem.reaction(i) * u).collect();
+        let carried: Vec<f64> =
+            gradients.iter().enumerate().map(|(i, slope)| dot(&problem.velocity(i), slope)).collect();
+        let of = |label: usize, body: &Body<D>| {
+            [&reacted, &carried].map(|values| body.nodal(&of_region(problem, &self.measures, label, values)))
+        };
+        Ok(Some(self.bodies.iter().enumerate().map(|(label, body)| of(label, body)).collect()))
     }
 
     /// Where the solution must be known: where no condition says what the flux is.
@@ -226,6 +254,7 @@ impl<const D: usize> Ledger<D> {
             regions: vec![Flow::default(); self.names.len()],
             stored: None,
             sources: None,
+            taken: None,
         }
     }
 
@@ -266,6 +295,7 @@ impl<const D: usize> Ledger<D> {
             sums.into_iter().map(|(sum, count): (f64, f64)| sum / count.max(1.0)).collect();
         let nothing = || vec![Content::default(); self.names.len()];
         let (mut sources, mut stored) = (nothing(), nothing());
+        let mut taken = vec![[Content::default(); 2]; self.names.len()];
         let mut leaves = |from: u16, into: u16, flux: f64, area: f64| {
             let flow = &mut flows.regions[from as usize];
             flow.seams -= flux;
@@ -282,10 +312,13 @@ impl<const D: usize> Ledger<D> {
         for seam in &cells.seams {
             leaves(seam.between[0], seam.between[1], seam.flux, seam.area);
         }
-        for (part, rate) in &cells.parts {
-            let (arises, stays) = (part.source, rate * part.volume);
-            sources[part.region as usize].value += arises;
-            stored[part.region as usize].value += stays;
+        for part in &cells.parts {
+            let (arises, stays) = (part.arises, part.stored + part.taken[0] + part.taken[1]);
+            sources[part.region as usize].value += part.arises;
+            stored[part.region as usize].value += part.stored;
+            for (sum, part) in taken[part.region as usize].iter_mut().zip(part.taken) {
+                sum.value += part;
+            }
             // What arises in the part of a cell beyond the interface comes in through that.
             if part.region != part.cell {
                 leaves(part.region, part.cell, arises - stays, 0.0);
@@ -295,6 +328,7 @@ impl<const D: usize> Ledger<D> {
         flows.stored = system.rates.is_some().then_some(stored);
         // Cells may miss a part of the domain, and so of its sources: then what leaves is not what arises.
         flows.sources = (problem.regions.len() != problem.materials.len()).then_some(sources);
+        flows.taken = problem.has_lower_terms().then_some(taken);
         flows
     }
 
@@ -306,23 +340,26 @@ impl<const D: usize> Ledger<D> {
                 (Content { value, doubt: sum.doubt + c.doubt }, size + c.value.abs())
             })
         };
-        let over = |flow: &Flow, sources: &[Content], stored: Option<&[Content]>| {
+        let over = |flow: &Flow, sources: &[Content], stored: Option<&[Content]>, taken: &[[Content; 2]]| {
             let ((source, made), (held, kept)) = (all(sources), all(stored.unwrap_or_default()));
-            let absolute = flow.walls + flow.seams + flow.jumps + source.value - held.value;
-            let size = flow.size + made + kept;
+            let (gone, used) = all(taken.as_flattened());
+            let absolute = flow.walls + flow.seams + flow.jumps + source.value - held.value - gone.value;
+            let size = flow.size + made + kept + used;
             let share = |value: f64| if size > 0.0 { value / size } else { 0.0 };
-            let doubt = source.doubt + held.doubt + flow.round_off + QUADRATURE[D - 1] * flow.size;
+            let doubt =
+                source.doubt + held.doubt + gone.doubt + flow.round_off + QUADRATURE[D - 1] * flow.size;
             // Where nothing flows, round-off is no share of anything.
             let relative = if absolute.abs() > flow.round_off { share(absolute.abs()) } else { 0.0 };
             LeftOver { absolute, relative, doubt: share(doubt) }
         };
         let (sources, held) = self.contents(flows);
-        let regions = flows
-            .regions
-            .iter()
-            .enumerate()
-            .map(|(k, flow)| over(flow, &sources[k..=k], held.map(|stored| &stored[k..=k])));
-        (over(&flows.whole, sources, held), regions.collect())
+        let taken = flows.taken.as_deref().unwrap_or_default();
+        let of_region = |k: usize| if taken.is_empty() { taken } else { &taken[k..=k] };
+        let regions =
+            flows.regions.iter().enumerate().map(|(k, flow)| {
+                over(flow, &sources[k..=k], held.map(|stored| &stored[k..=k]), of_region(k))
+            });
+        (over(&flows.whole, sources, held, taken), regions.collect())
     }
 
     /// Sources, and what is stored.
@@ -337,6 +374,8 @@ impl<const D: usize> Ledger<D> {
         let jumps = flows.whole.jumps;
         let (sources, stored) = self.contents(flows);
         let named = self.names.iter().cloned().zip(sources);
+        let taken = flows.taken.as_ref();
+        let of_all = |k: usize| taken.map(|taken| taken.iter().map(|parts| parts[k].value).sum());
         BalanceReport {
             into: flows.boundaries.clone(),
             sources: SourceReport {
@@ -345,6 +384,8 @@ impl<const D: usize> Ledger<D> {
                 flux_jumps: jumps,
             },
             stored: stored.map(|stored| stored.iter().map(|c| c.value).sum()),
+            reacted: of_all(0),
+            carried: of_all(1),
             left_over: whole.absolute,
             relative: whole.relative,
             regions: (self.names.iter().zip(&flows.regions).zip(regions).enumerate())
@@ -354,6 +395,8 @@ impl<const D: usize> Ledger<D> {
                         interfaces: flow.seams,
                         sources: sources[k].value,
                         stored: stored.map(|stored| stored[k].value),
+                        reacted: taken.map(|taken| taken[k][0].value),
+                        carried: taken.map(|taken| taken[k][1].value),
                         left_over: left.absolute,
                         relative: left.relative,
                     };
@@ -362,6 +405,17 @@ impl<const D: usize> Ledger<D> {
                 .collect::<BTreeMap<_, _>>(),
         }
     }
+}
+
+/// Values at the nodes of a region, each after the measure of its node.
+fn of_region<const D: usize>(
+    problem: &Problem<'_, D>,
+    measures: &[f64],
+    label: usize,
+    values: &[f64],
+) -> Vec<(f64, f64)> {
+    let all = problem.labels.iter().zip(measures).zip(values);
+    all.filter(|((l, _), _)| **l as usize == label).map(|((_, m), v)| (*m, *v)).collect()
 }
 
 /// Whether the flux through a point of the boundary depends on the solution.

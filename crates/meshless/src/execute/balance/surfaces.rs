@@ -165,7 +165,7 @@ fn seams_of<const D: usize>(
             let between = [sides[0].min(sides[1]), sides[0].max(sides[1])];
             // That the fluxes on the two sides differ by so much holds for either direction of the normal.
             let jump = problem
-                .jump_between(between[0], between[1])
+                .law_between(between[0], between[1])
                 .and_then(|(jump, _)| jump.flux.as_ref())
                 .map_or(0.0, |flux| flux.at(&element.at));
             seams.push(Seam {

@@ -61,7 +61,7 @@ impl<'a, const D: usize> Heat<'a, D> {
         let method = plan.method.params.build::<D>();
         let mut seconds = Seconds::default();
         let discretization = discretize(scene, &discrete, &*method, &mut seconds)?;
-        let mass = Mass::of(&discretization)?;
+        let mass = Mass::of(&discrete.problem(), &discretization)?;
         let may_grow = may_grow(scene, &discrete, &discretization, &mass);
         Ok(Self {
             scene,
@@ -135,7 +135,7 @@ impl<'a, const D: usize> Heat<'a, D> {
         self.discretization = discretize(&scene, &self.discrete, &*self.method, &mut self.seconds)?;
         self.now = scene;
         if changed.matrix {
-            self.mass = Mass::of(&self.discretization)?;
+            self.mass = Mass::of(&self.discrete.problem(), &self.discretization)?;
             self.changes += 1;
             self.may_grow = may_grow(&self.now, &self.discrete, &self.discretization, &self.mass);
             self.prepared = None;

@@ -5,7 +5,7 @@ use meshless_interfaces::sharp::{Conservation, MAX_ORDER, SharpParams};
 use super::Steps;
 use crate::Error;
 use crate::plan::effects::Survey;
-use crate::scene::{ConservationName, Scene};
+use crate::scene::{ConservationName, RegionSpec, Scene};
 
 pub(super) fn params(scene: &Scene) -> SharpParams {
     let chosen = SharpParams::default();
@@ -29,7 +29,8 @@ fn conservation(scene: &Scene) -> Conservation {
 }
 
 fn has_balances(scene: &Scene) -> bool {
-    scene.dimension > 1 && scene.time.is_none()
+    let moving = |r: &RegionSpec| r.reaction.is_some() || !r.velocity.is_empty();
+    scene.dimension > 1 && scene.time.is_none() && !scene.regions.iter().any(moving)
 }
 
 /// Microseconds of a stencil beside its factorisation, and those of a thousand multiplications of that: about, on one core.
@@ -87,8 +88,8 @@ pub(super) fn check(scene: &Scene) -> Result<(), Error> {
     }
     let asked = scene.method.options.conservation.filter(|name| *name != ConservationName::None);
     if asked.is_some() && !has_balances(scene) {
-        let message =
-            "the method \"sharp\" has balances in steady scenes in the plane and in space only".to_owned();
+        let message = "the method \"sharp\" has balances for steady diffusion in the plane and in space only"
+            .to_owned();
         let error = scene.error_at_boundaries(message, "remove the key `conservation`".to_owned());
         return Err(error.into());
     }
