@@ -125,7 +125,6 @@ const CHOSEN: [Chosen; 8] = [
         coarsest: 0.3,
         rungs: 2,
         asked: &[(SHARP_4, 2.5, 2e-3), (CONSERVATIVE, 0.5, 1e-1)],
-        ..PLANE
     },
     Chosen {
         case: "capacity",
@@ -134,7 +133,8 @@ const CHOSEN: [Chosen; 8] = [
         effects: Effects { time: true, resistance: 0.2, ..Effects::NONE },
         coarsest: 0.2,
         rungs: 2,
-        asked: &[(SHARP_4, 2.5, 1e-3), (CONSERVATIVE, 0.8, 5e-2)],
+        asked: &[(SHARP_4, 1.0, 6e-2), (CONSERVATIVE, 0.8, 5e-2)],
+        ..PLANE
     },
 ];
 
