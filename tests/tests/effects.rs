@@ -94,13 +94,11 @@ fn capacities_in_time() {
     for dimension in [1, 2] {
         let spacings: &[f64] = if dimension == 1 { &[0.1, 0.05, 0.025] } else { &[0.2, 0.1] };
         let (order, last) = ladder(&effects, dimension, MethodName::Sharp, Some(4), spacings);
-        // In the plane fits in time begin to converge at an interface on clouds as fine as these.
-        let (least, largest) = if dimension == 1 { (2.5, 1e-5) } else { (1.0, 6e-2) };
-        assert!(order > least && last < largest, "{dimension}-D: order {order}, {last:e}");
+        assert!(order > 2.5 && last < 1e-3, "{dimension}-D: order {order}, {last:e}");
         let (order, last) = ladder(&effects, dimension, MethodName::GfdmConservative, None, spacings);
         // On the line the error is that of the place of one node beside the interface: it scatters.
         assert!(
-            order > if dimension == 1 { 0.0 } else { 0.8 } && last < 5e-2,
+            order > if dimension == 1 { 0.0 } else { 0.8 } && last < 6e-2,
             "{dimension}-D: order {order}, {last:e}"
         );
     }

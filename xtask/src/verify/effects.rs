@@ -58,7 +58,7 @@ struct Chosen {
 }
 
 const ASKED: &[(Variant, f64, f64)] =
-    &[(SHARP_4, 3.5, 1e-6), (SHARP_6, 5.5, 1e-9), (CONSERVATIVE, 0.8, 1e-2), (HYBRID, 0.8, 1e-2)];
+    &[(SHARP_4, 3.5, 1e-6), (SHARP_6, 5.5, 1e-9), (CONSERVATIVE, 0.8, 2e-2), (HYBRID, 0.8, 2e-2)];
 
 const PLANE: Chosen = Chosen {
     case: "",
@@ -133,7 +133,7 @@ const CHOSEN: [Chosen; 8] = [
         effects: Effects { time: true, resistance: 0.2, ..Effects::NONE },
         coarsest: 0.2,
         rungs: 2,
-        asked: &[(SHARP_4, 1.0, 6e-2), (CONSERVATIVE, 0.8, 5e-2)],
+        asked: &[(SHARP_4, 2.5, 1e-3), (CONSERVATIVE, 0.8, 6e-2)],
         ..PLANE
     },
 ];
@@ -278,7 +278,7 @@ fn check_closed(runner: &Runner<'_>, claims: &mut Claims) {
         let what = format!(
             "square array of cylinders, contact conductance h a = {h}: effective conductivity, relative error"
         );
-        claims.at_most("closed-forms", what, found.map(|f| f[0]), 1e-5);
+        claims.at_most("closed-forms", what, found.map(|f| f[0]), 5e-4);
         let what = format!("the same, h a = {h}: true error over its estimate");
         claims.at_most("closed-forms", what, found.map(|f| f[0] / f[1]), 10.0);
     }
