@@ -3,6 +3,7 @@
 use crate::interval::Interval;
 use crate::polygon::Polygon;
 use crate::polyhedron::Polyhedron;
+use crate::split::{Solid, heights};
 
 /// Height above a cutting plane, relative to the sizes of the numbers that it was computed from, up to which a vertex
 /// counts as lying on the plane and is kept: some ten times the round-off of the height. Regular grids have planes
@@ -18,6 +19,8 @@ pub(crate) enum Source {
     Plane(u32),
     /// A curved face of the container.
     Cut(u32),
+    /// A plane that walls lie in; of the finished cell, a piece of a wall.
+    Wall(u32),
     /// The box that the construction starts from.
     #[default]
     Start,
@@ -95,6 +98,31 @@ impl Body<'_> {
             Self::Polygon(body) => body.radius(),
             Self::Polyhedron(body) => body.radius(),
         }
+    }
+
+    /// The least and the largest height of a vertex above a plane.
+    pub(crate) fn heights(&self, normal: &[f64; 3], offset: f64) -> [f64; 2] {
+        match self {
+            Self::Interval(body) => heights(&**body, normal, offset),
+            Self::Polygon(body) => heights(&**body, normal, offset),
+            Self::Polyhedron(body) => heights(&**body, normal, offset),
+        }
+    }
+
+    /// The corners of the smallest box that holds the body.
+    pub(crate) fn extent(&self) -> ([f64; 3], [f64; 3]) {
+        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let each = |x: [f64; 3]| {
+            for k in 0..3 {
+                (lo[k], hi[k]) = (lo[k].min(x[k]), hi[k].max(x[k]));
+            }
+        };
+        match self {
+            Self::Interval(body) => body.vertices(each),
+            Self::Polygon(body) => body.vertices(each),
+            Self::Polyhedron(body) => body.vertices(each),
+        }
+        (lo, hi)
     }
 
     pub(crate) fn is_empty(&self) -> bool {

@@ -6,7 +6,7 @@ pub enum FaceKind {
     /// The cell of another node; the number is the one that the candidate was given.
     Neighbor(u32),
     /// The boundary of the domain; the number is that of the [`Plane`](crate::Plane) or
-    /// [`Cut`](crate::Cut).
+    /// [`Cut`](crate::Cut), or what lies beyond the [`Walls`](crate::Walls).
     Boundary(u16),
 }
 
@@ -33,8 +33,8 @@ pub struct Cell<const D: usize> {
     /// Centroid of the cell.
     pub centroid: [f64; D],
     /// The faces: those with neighbours first, nearest neighbour first, then those on the boundary in the order of
-    /// the container's planes and cuts. Faces without size are left out. Each neighbour, plane and cut occurs once
-    /// at most.
+    /// the container's planes, cuts and walls. Faces without size are left out. Each neighbour, plane and cut occurs once
+    /// at most, each wall once a piece: pieces are convex.
     pub faces: Vec<CellFace<D>>,
     /// Twice the distance of the farthest vertex: a node farther away than this cannot touch the cell.
     pub reach: f64,

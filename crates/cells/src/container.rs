@@ -40,7 +40,60 @@ impl<const D: usize> fmt::Debug for Cut<'_, D> {
     }
 }
 
-/// The domain that cells are clipped to: the intersection of all its planes and cuts.
+/// A flat face that ends at edges, a side of a polygon or of one of the boxes of a union: part of a boundary that is not the
+/// intersection of its planes, or of an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wall<const D: usize> {
+    /// Unit normal, to either side.
+    pub normal: [f64; D],
+    /// Distance of the wall's plane from the origin along the normal.
+    pub offset: f64,
+    /// Lower corner of a box that holds the face; may be infinite.
+    pub min: [f64; D],
+    /// Upper corner of that box; may be infinite.
+    pub max: [f64; D],
+}
+
+/// A boundary that is made of walls, in any arrangement: re-entrant edges, corners, slots and openings are met exactly.
+///
+/// A cell that walls cross is divided by their planes into convex parts, each of which is wholly in the domain or out of it. Parts
+/// across a gap that are farther away than half of what was searched are not found: nodes have to resolve the domain on either side.
+#[derive(Clone, Copy)]
+pub struct Walls<'a, const D: usize> {
+    /// The walls.
+    pub walls: &'a [Wall<D>],
+    /// `None` at a point in the domain, otherwise the number that faces towards that point carry. Asked off the walls only.
+    pub beyond: &'a (dyn Fn(&[f64; D]) -> Option<u16> + Sync),
+    /// The same boundary by level sets: for a cell that more than [`MOST_WALLS`] planes cross.
+    pub cuts: &'a [Cut<'a, D>],
+}
+
+/// Most planes of walls that a cell is divided by. Parts are as many as their number to the power D, at worst; a cell that more
+/// walls cross than this is larger than what they resolve.
+pub const MOST_WALLS: usize = 32;
+
+impl<const D: usize> fmt::Debug for Walls<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Walls").field("walls", &self.walls).field("cuts", &self.cuts).finish_non_exhaustive()
+    }
+}
+
+/// What divides the domain: interfaces that are made of walls.
+#[derive(Clone, Copy)]
+pub struct Interfaces<'a, const D: usize> {
+    /// The walls.
+    pub walls: &'a [Wall<D>],
+    /// The number of the part that a point off the walls is in.
+    pub label: &'a (dyn Fn(&[f64; D]) -> u16 + Sync),
+}
+
+impl<const D: usize> fmt::Debug for Interfaces<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Interfaces").field("walls", &self.walls).finish_non_exhaustive()
+    }
+}
+
+/// The domain that cells are clipped to: the intersection of all its planes and cuts, and of what walls bound.
 ///
 /// A box has no faces of its own: its `2 D` planes carry the numbers, see [`box_planes`].
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +106,8 @@ pub struct Container<'a, const D: usize> {
     pub planes: &'a [Plane<D>],
     /// Curved faces.
     pub cuts: &'a [Cut<'a, D>],
+    /// Flat faces with edges.
+    pub walls: Option<Walls<'a, D>>,
 }
 
 impl<const D: usize> Container<'_, D> {
@@ -70,8 +125,19 @@ impl<const D: usize> Container<'_, D> {
                 return Err(CellError::InvalidPlane { plane, face, length, offset });
             }
         }
-        Ok(())
+        self.walls.map_or(Ok(()), |walls| check_walls(walls.walls))
     }
+}
+
+/// Whether walls are given by unit normals.
+pub(crate) fn check_walls<const D: usize>(walls: &[Wall<D>]) -> Result<(), CellError> {
+    for (wall, Wall { normal, offset, .. }) in walls.iter().enumerate() {
+        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+        if !offset.is_finite() || length.is_nan() || (length - 1.0).abs() > UNIT_TOLERANCE {
+            return Err(CellError::InvalidWall { wall, length, offset: *offset });
+        }
+    }
+    Ok(())
 }
 
 /// The planes of the box from `min` to `max`: face `2 k` is the lower one on axis `k`, face `2 k + 1` the upper.

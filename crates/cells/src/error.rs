@@ -131,6 +131,16 @@ pub enum CellError {
         /// Offset.
         offset: f64,
     },
+    /// A wall has no unit normal or no finite offset.
+    #[error("wall {wall} is invalid: its normal has length {length}, its offset is {offset}")]
+    InvalidWall {
+        /// Position in the list of walls.
+        wall: usize,
+        /// Length of the normal.
+        length: f64,
+        /// Offset.
+        offset: f64,
+    },
     /// The searched radius is negative or not a number.
     #[error("the searched radius {searched} is not a radius")]
     InvalidRadius {

@@ -10,12 +10,13 @@ use crate::error::CellError;
 const FACE_TOLERANCE: f64 = 1e-14;
 
 /// Merges the pieces that come from the same bisector, plane or curve, and drops those without size;
-/// `scale` is the cell's radius to the power D-1.
+/// `walls` has the number of every piece of a wall, `scale` is the cell's radius to the power D-1.
 pub(crate) fn collect_faces<const D: usize>(
     center: &[f64; D],
     candidates: &[(u32, [f64; D])],
     order: &[(f64, u32)],
     container: &Container<D>,
+    walls: &[u16],
     pieces: &mut [Piece],
     scale: f64,
 ) -> Result<Vec<CellFace<D>>, CellError> {
@@ -38,7 +39,13 @@ pub(crate) fn collect_faces<const D: usize>(
         let kind = match group[0].source {
             Source::Candidate(rank) => FaceKind::Neighbor(candidates[order[rank as usize].1 as usize].0),
             Source::Plane(k) => FaceKind::Boundary(container.planes[k as usize].face),
-            Source::Cut(k) => FaceKind::Boundary(container.cuts[k as usize].face),
+            Source::Cut(k) => {
+                let more = container.walls.iter().flat_map(|walls| walls.cuts);
+                let cut = container.cuts.iter().chain(more).nth(k as usize);
+                // Every cut that made a face is one of these.
+                FaceKind::Boundary(cut.map_or(0, |cut| cut.face))
+            }
+            Source::Wall(k) => FaceKind::Boundary(walls[k as usize]),
             Source::Start => return Err(CellError::OpenContainer { center: center.to_vec() }),
         };
         let normal = resize(&vector.map(|x| x / area));

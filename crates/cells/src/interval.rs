@@ -4,7 +4,7 @@ use crate::body::{Measure, Piece, Source};
 use crate::root::bracketed_root;
 
 /// An interval around the node, which is the origin, with the source of each end.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Interval {
     lo: f64,
     hi: f64,
@@ -19,6 +19,10 @@ impl Interval {
 
     pub(crate) fn radius(&self) -> f64 {
         self.lo.abs().max(self.hi.abs())
+    }
+
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.lo, self.hi]
     }
 
     pub(crate) fn is_empty(&self) -> bool {

@@ -6,7 +6,7 @@
 //! needs them only at the nodes where it is conservative. [`voronoi_cell`] therefore builds one cell at a
 //! time by clipping, in one, two or three dimensions, and never a tessellation of the whole cloud.
 //!
-//! Flat boundaries ([`Plane`]) are met exactly. A curved boundary ([`Cut`]) is a level set that is evaluated at
+//! Flat boundaries ([`Plane`]) are met exactly, also those with re-entrant edges ([`Walls`]). A curved boundary ([`Cut`]) is a level set that is evaluated at
 //! the corners of the cell and met exactly on its edges, so that the faces between neighbours agree; what lies
 //! between the edges is replaced by a chord (2-D) or a fan of triangles (3-D), which leaves an error of
 //! `O(h^2)` in the volume of the domain.
@@ -20,7 +20,7 @@
 //!
 //! // Four nodes of the unit square; the cell of the first, which lies at the corner (0, 0).
 //! let planes = box_planes(&[0.0, 0.0], &[1.0, 1.0]);
-//! let container = Container { min: [0.0, 0.0], max: [1.0, 1.0], planes: &planes, cuts: &[] };
+//! let container = Container { min: [0.0, 0.0], max: [1.0, 1.0], planes: &planes, cuts: &[], walls: None };
 //! let others = [(1, [1.0, 0.0]), (2, [0.0, 1.0]), (3, [1.0, 1.0])];
 //! let cell = voronoi_cell(&[0.0, 0.0], &others, f64::INFINITY, &container, &mut CellScratch::default())?;
 //!
@@ -39,9 +39,10 @@ mod interval;
 mod polygon;
 mod polyhedron;
 mod root;
+mod split;
 mod voronoi;
 
 pub use cell::{Cell, CellFace, FaceKind};
-pub use container::{Container, Cut, Plane, box_planes};
+pub use container::{Container, Cut, Interfaces, MOST_WALLS, Plane, Wall, Walls, box_planes};
 pub use error::CellError;
-pub use voronoi::{CellScratch, voronoi_cell};
+pub use voronoi::{CellScratch, voronoi_cell, voronoi_parts};

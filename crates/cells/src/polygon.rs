@@ -36,6 +36,15 @@ impl Polygon {
         self.corners.iter().map(|c| c.at[0] * c.at[0] + c.at[1] * c.at[1]).fold(0.0, f64::max).sqrt()
     }
 
+    /// Becomes another polygon.
+    pub(crate) fn assign(&mut self, other: &Self) {
+        self.corners.clone_from(&other.corners);
+    }
+
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.corners.iter().map(|corner| corner.at)
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.corners.is_empty()
     }

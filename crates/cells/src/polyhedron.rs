@@ -96,6 +96,18 @@ impl Polyhedron {
         self.surface.vertices.iter().map(|&v| dot(v, v)).fold(0.0, f64::max).sqrt()
     }
 
+    /// Becomes another polyhedron.
+    pub(crate) fn assign(&mut self, other: &Self) {
+        let (own, other) = (&mut self.surface, &other.surface);
+        own.vertices.clone_from(&other.vertices);
+        own.faces.clone_from(&other.faces);
+        own.loops.clone_from(&other.loops);
+    }
+
+    pub(crate) fn corners(&self) -> impl Iterator<Item = Point> {
+        self.surface.vertices.iter().copied()
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.surface.vertices.is_empty()
     }

@@ -1,13 +1,14 @@
 //! The construction of a cell: start from a box, clip by planes, then by bisectors from near to far, then by curves.
 
-use crate::body::{Body, Piece, Source};
+use crate::body::{Body, Measure, Piece, Source};
 use crate::cell::Cell;
-use crate::container::Container;
+use crate::container::{Container, Cut, Interfaces, check_walls};
 use crate::error::CellError;
 use crate::faces::collect_faces;
 use crate::interval::Interval;
 use crate::polygon::Polygon;
 use crate::polyhedron::Polyhedron;
+use crate::split::Division;
 
 /// Distance by which a node may lie beyond the boundary, as a fraction of the radius of its cell. Boundary nodes come
 /// from projections, which end some digits before round-off; a cell that is off by more than this has another shape.
@@ -40,6 +41,9 @@ pub struct CellScratch {
     interval: Interval,
     polygon: Polygon,
     polyhedron: Polyhedron,
+    division: Division,
+    /// Numbers of the pieces on walls.
+    walls: Vec<u16>,
 }
 
 /// The Voronoi cell of the node at `center` among `candidates`, clipped to `container`, for `D` = 1, 2 or 3.
@@ -61,37 +65,140 @@ pub fn voronoi_cell<const D: usize>(
     container: &Container<D>,
     scratch: &mut CellScratch,
 ) -> Result<Cell<D>, CellError> {
-    const { assert!(D >= 1 && D <= 3, "cells exist in one, two and three dimensions") };
-    container.check()?;
-    if searched.is_nan() || searched < 0.0 {
-        return Err(CellError::InvalidRadius { searched });
-    }
-    let CellScratch { order, pieces, interval, polygon, polyhedron } = scratch;
-    sort_candidates(center, candidates, order)?;
-    let mut body = match D {
-        1 => Body::Interval(interval),
-        2 => Body::Polygon(polygon),
-        _ => Body::Polyhedron(polyhedron),
-    };
-    let (lo, hi) = start_box(center, searched, container)?;
-    body.reset(&lo, &hi);
-    let beyond = clip_by_planes(center, container, &mut body);
-    clip_by_candidates(center, candidates, order, &mut body)?;
-    check_inside(center, beyond, &body)?;
-    cut_by_curves(center, container, &mut body)?;
-    let reach = 2.0 * body.radius();
+    let mut bodies = CellScratch::bodies::<D>(scratch);
+    bodies.clip(center, candidates, searched, container)?;
+    let reach = 2.0 * bodies.keep(center, container)?;
     if reach > searched * (1.0 + REACH_TOLERANCE) {
         return Err(CellError::Incomplete { center: center.to_vec(), searched, needed: reach });
     }
-    pieces.clear();
-    let measure = body.measure(pieces);
+    let Bodies { order, pieces, walls, measure, .. } = bodies;
     let radius = 0.5 * reach;
     if measure.volume.is_nan() || measure.volume <= VOLUME_TOLERANCE * power::<D>(radius) * radius {
         return Err(CellError::Degenerate { center: center.to_vec(), volume: measure.volume, radius });
     }
-    let faces = collect_faces(center, candidates, order, container, pieces, power::<D>(radius))?;
+    let faces = collect_faces(center, candidates, order, container, walls, pieces, power::<D>(radius))?;
     let centroid = std::array::from_fn(|axis| center[axis] + measure.moment[axis] / measure.volume);
     Ok(Cell { volume: measure.volume, centroid, faces, reach })
+}
+
+/// The parts that interfaces divide the cell of the node at `center` into, as `(label, volume)`, those with the same label as one; for
+/// the other arguments see [`voronoi_cell`]. `None` where more than [`MOST_WALLS`](crate::MOST_WALLS) planes cross the cell.
+///
+/// # Errors
+/// As [`voronoi_cell`].
+pub fn voronoi_parts<const D: usize>(
+    center: &[f64; D],
+    candidates: &[(u32, [f64; D])],
+    searched: f64,
+    container: &Container<D>,
+    interfaces: &Interfaces<D>,
+    scratch: &mut CellScratch,
+) -> Result<Option<Vec<(u16, f64)>>, CellError> {
+    check_walls(interfaces.walls)?;
+    let mut bodies = CellScratch::bodies::<D>(scratch);
+    bodies.clip(center, candidates, searched, container)?;
+    let reach = 2.0 * bodies.keep(center, container)?;
+    if reach > searched * (1.0 + REACH_TOLERANCE) {
+        return Err(CellError::Incomplete { center: center.to_vec(), searched, needed: reach });
+    }
+    let Bodies { body, division, .. } = bodies;
+    // What replaces walls has been cut off already, or no wall crosses the cell.
+    let walls = container.walls.iter().flat_map(|walls| walls.walls).chain(interfaces.walls);
+    if !division.find(center, &body, walls) {
+        return Ok(None);
+    }
+    let at = |x: [f64; 3]| std::array::from_fn(|axis| center[axis] + x[axis]);
+    let label = |x: [f64; 3]| {
+        let x = at(x);
+        let is_inside = container.walls.is_none_or(|walls| (walls.beyond)(&x).is_none());
+        is_inside.then(|| (interfaces.label)(&x))
+    };
+    let mut found: Vec<(u16, f64)> = Vec::new();
+    for part in division.divide(&body, label) {
+        let (Some(label), volume) = part.volume() else { continue };
+        match found.iter_mut().find(|known| known.0 == *label) {
+            Some(known) => known.1 += volume,
+            None => found.push((*label, volume)),
+        }
+    }
+    Ok(Some(found))
+}
+
+/// The cell that is being made.
+struct Bodies<'s> {
+    order: &'s mut Vec<(f64, u32)>,
+    body: Body<'s>,
+    division: &'s mut Division,
+    pieces: &'s mut Vec<Piece>,
+    walls: &'s mut Vec<u16>,
+    measure: Measure,
+}
+
+impl CellScratch {
+    fn bodies<const D: usize>(&mut self) -> Bodies<'_> {
+        const { assert!(D >= 1 && D <= 3, "cells exist in one, two and three dimensions") };
+        let Self { order, pieces, interval, polygon, polyhedron, division, walls } = self;
+        let body = match D {
+            1 => Body::Interval(interval),
+            2 => Body::Polygon(polygon),
+            _ => Body::Polyhedron(polyhedron),
+        };
+        Bodies { order, body, division, pieces, walls, measure: Measure { volume: 0.0, moment: [0.0; 3] } }
+    }
+}
+
+impl Bodies<'_> {
+    /// The part of the domain, without what walls leave out of it, that is nearest to the node.
+    fn clip<const D: usize>(
+        &mut self,
+        center: &[f64; D],
+        candidates: &[(u32, [f64; D])],
+        searched: f64,
+        container: &Container<D>,
+    ) -> Result<(), CellError> {
+        container.check()?;
+        if searched.is_nan() || searched < 0.0 {
+            return Err(CellError::InvalidRadius { searched });
+        }
+        sort_candidates(center, candidates, self.order)?;
+        let (lo, hi) = start_box(center, searched, container)?;
+        self.body.reset(&lo, &hi);
+        let beyond = clip_by_planes(center, container, &mut self.body);
+        clip_by_candidates(center, candidates, self.order, &mut self.body)?;
+        check_inside(center, beyond, &self.body)?;
+        cut_by_curves(center, container.cuts, 0, &mut self.body)
+    }
+
+    /// Measures what of the body walls leave in the domain; returns the distance of its farthest vertex.
+    fn keep<const D: usize>(
+        &mut self,
+        center: &[f64; D],
+        container: &Container<D>,
+    ) -> Result<f64, CellError> {
+        let Self { body, division, pieces, walls: numbers, measure, .. } = self;
+        pieces.clear();
+        numbers.clear();
+        let whole = |body: &Body<'_>, pieces: &mut Vec<Piece>| (body.measure(pieces), body.radius());
+        let radius;
+        (*measure, radius) = match container.walls {
+            None => whole(body, pieces),
+            Some(walls) if division.find(center, body, walls.walls.iter()) => {
+                let at = |x: [f64; 3]| std::array::from_fn(|axis| center[axis] + x[axis]);
+                let kept = division.keep(body, |x| (walls.beyond)(&at(x)), pieces, numbers);
+                if kept.outside > OUTSIDE_TOLERANCE * body.radius() {
+                    let face = (walls.beyond)(center).unwrap_or_default();
+                    let distance = kept.outside.min(body.radius());
+                    return Err(CellError::OutsideDomain { center: center.to_vec(), face, distance });
+                }
+                (kept.measure, kept.radius)
+            }
+            Some(walls) => {
+                cut_by_curves(center, walls.cuts, container.cuts.len(), body)?;
+                whole(body, pieces)
+            }
+        };
+        Ok(radius)
+    }
 }
 
 /// `length^(D-1)`.
@@ -216,12 +323,14 @@ fn clip_by_candidates<const D: usize>(
     Ok(())
 }
 
+/// Cuts by level sets, whose sources count on from `first`.
 fn cut_by_curves<const D: usize>(
     center: &[f64; D],
-    container: &Container<D>,
+    cuts: &[Cut<'_, D>],
+    first: usize,
     body: &mut Body,
 ) -> Result<(), CellError> {
-    for (k, cut) in (0_u32..).zip(container.cuts) {
+    for (k, cut) in (first as u32..).zip(cuts) {
         let face = cut.face;
         let undefined = || CellError::LevelNotANumber { face, center: center.to_vec() };
         let level = |x: &[f64; D]| (cut.level)(&std::array::from_fn(|axis| center[axis] + x[axis]));

@@ -49,7 +49,7 @@ fn ball_error<const D: usize>(h: f64, exact: f64) -> f64 {
     let points = ball_cloud::<D>(h);
     let level = |x: &[f64; D]| 3.0 * (norm(x).powi(4) - 1.0);
     let cuts = [Cut { level: &level, face: 5 }];
-    let container = Container { min: [-1.0; D], max: [1.0; D], planes: &[], cuts: &cuts };
+    let container = Container { min: [-1.0; D], max: [1.0; D], planes: &[], cuts: &cuts, walls: None };
     let cells = cells_of(&points, 3.0 * h, &container);
     check_cells(&cells);
     for (x, cell) in points.iter().zip(&cells) {
@@ -89,7 +89,7 @@ fn a_hole_is_cut_out() {
     let level = |x: &[f64; 2]| 0.5 - norm(x);
     let planes = meshless_cells::box_planes(&[-1.0; 2], &[1.0; 2]);
     let cuts = [Cut { level: &level, face: 9 }];
-    let container = Container { min: [-1.0; 2], max: [1.0; 2], planes: &planes, cuts: &cuts };
+    let container = Container { min: [-1.0; 2], max: [1.0; 2], planes: &planes, cuts: &cuts, walls: None };
     let error = |n: usize| {
         let mut points: Vec<[f64; 2]> =
             jittered::<2>(n, 0.5, 3).iter().map(|x| x.map(|t| 2.0 * t - 1.0)).collect();
@@ -134,7 +134,7 @@ fn a_flat_level_set_is_as_good_as_a_plane() {
 fn an_interval_ends_at_the_root() {
     let level = |x: &[f64; 1]| x[0] * x[0] - 2.0;
     let cuts = [Cut { level: &level, face: 1 }];
-    let container = Container { min: [-2.0], max: [2.0], planes: &[], cuts: &cuts };
+    let container = Container { min: [-2.0], max: [2.0], planes: &[], cuts: &cuts, walls: None };
     let points = [[-2.0_f64.sqrt()], [-0.3], [0.4], [1.1]];
     let cells = cells_of(&points, 0.5, &container);
     let total: f64 = cells.iter().map(|cell| cell.volume).sum();

@@ -95,7 +95,7 @@ proptest! {
             Plane { normal, offset, face: plane.face }
         }).collect();
         let container =
-            Container { min: [-3.0 * scale; 2], max: [3.0 * scale; 2], planes: &moved_planes, cuts: &[] };
+            Container { min: [-3.0 * scale; 2], max: [3.0 * scale; 2], planes: &moved_planes, cuts: &[], walls: None };
         let cells = cells_of(&points, 0.3, &unit(&planes));
         let others = cells_of(&moved, 0.3 * scale, &container);
         for (cell, other) in cells.iter().zip(&others) {

@@ -67,6 +67,6 @@ pub use planar::{PlanarPiece, PlanarPieces, Ray, Vertex};
 pub use projection::{Projection, ProjectionError};
 pub use quadrature::{gauss, gauss_from_corner};
 pub use region::{Component, Contact, GapParams, RegionGraph, RegionMap, RegionShape, TIE, ThinLayer};
-pub use shape::{Ball, Cylinder, HalfSpace, Polygon, Shape};
+pub use shape::{Ball, Cylinder, FlatFace, HalfSpace, Polygon, Shape};
 pub use slit::{Sight, Slit, SlitFoot, SlitPoint};
 pub use surface::{DEFAULT_CREASE, MAX_STL_TRIANGLES, SurfaceParams, TriangleSurface, read_stl};

@@ -77,7 +77,7 @@ pub(crate) fn unit_planes<const D: usize>() -> Vec<Plane<D>> {
 }
 
 pub(crate) fn unit<const D: usize>(planes: &[Plane<D>]) -> Container<'_, D> {
-    Container { min: [0.0; D], max: [1.0; D], planes, cuts: &[] }
+    Container { min: [0.0; D], max: [1.0; D], planes, cuts: &[], walls: None }
 }
 
 pub(crate) fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {

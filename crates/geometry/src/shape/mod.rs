@@ -1,6 +1,7 @@
 //! Shapes: primitives with signed distances, level sets, and their unions, intersections and differences.
 
 mod evaluate;
+mod flat;
 mod polygon;
 mod primitives;
 mod project;
@@ -9,6 +10,7 @@ use std::fmt;
 use std::sync::Arc;
 
 pub(crate) use evaluate::spatial;
+pub use flat::FlatFace;
 pub use polygon::Polygon;
 pub use primitives::{Ball, Cylinder, HalfSpace};
 

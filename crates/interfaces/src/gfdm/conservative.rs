@@ -8,10 +8,14 @@
 //! `B(x) = x / (exp(x) - 1)` is antisymmetric; less what the velocity carries of `u_i`, as the equation has `v . grad u` and not
 //! `div(v u)`, `t B(P) (u_i - u_j)` is left: the maximum principle holds at every Péclet number.
 
-use meshless_cells::{Cell, CellError, CellFace, CellScratch, Container, Cut, FaceKind, Plane, voronoi_cell};
+use meshless_cells::{
+    Cell, CellError, CellFace, CellScratch, Container, Cut, FaceKind, Interfaces, Plane, Walls, voronoi_cell,
+    voronoi_parts,
+};
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
+use super::walls::{self, Flat, FlatInterfaces, Level, cuts};
 use crate::equation::Contact;
 use crate::{Condition, MethodError, Problem};
 
@@ -25,6 +29,9 @@ pub(super) const NEGLIGIBLE_FACE: f64 = 1e-12;
 
 /// Least cosine between the way from node to node and the normal of an interface by which the area of a face is told from it.
 const LEAST_SEEN: f64 = 0.2;
+
+/// Distance, relative to the size of the domain, up to which a point is on a flat boundary: round-off of coordinates.
+const ON_BOUNDARY: f64 = 1e-9;
 
 /// The balance of one cell.
 #[derive(Debug, Clone)]
@@ -54,7 +61,11 @@ pub(super) struct Crossing {
 pub(super) struct CellBalance<'a, const D: usize> {
     pub(super) problem: &'a Problem<'a, D>,
     planes: Vec<Plane<D>>,
+    /// Faces that are curved somewhere.
     levels: Vec<(FaceId, Level<'a, D>)>,
+    /// Faces that are flat, and end at edges.
+    flat: Flat<'a, D>,
+    pub(super) interfaces: FlatInterfaces<'a, D>,
     index: CellList<'a, D>,
     /// The interaction radius if it is the same at all nodes.
     uniform_radius: Option<f64>,
@@ -64,11 +75,10 @@ pub(super) struct CellBalance<'a, const D: usize> {
 pub(super) struct BalanceScratch<'b, const D: usize> {
     cell: CellScratch,
     cuts: Vec<Cut<'b, D>>,
+    wall_cuts: Vec<Cut<'b, D>>,
     found: Vec<u32>,
     candidates: Vec<(u32, [f64; D])>,
 }
-
-type Level<'a, const D: usize> = Box<dyn Fn(&[f64; D]) -> f64 + Sync + 'a>;
 
 impl<'a, const D: usize> CellBalance<'a, D> {
     pub(super) fn new(problem: &'a Problem<'a, D>) -> Result<Self, MethodError> {
@@ -82,33 +92,69 @@ impl<'a, const D: usize> CellBalance<'a, D> {
                 }
             }
         }
-        let levels = problem
-            .domain
-            .curved_faces()
-            .into_iter()
-            .map(|(face, shape, hole)| {
-                let sign = if hole { -1.0 } else { 1.0 };
-                (face, Box::new(move |x: &[f64; D]| sign * shape.level(x)) as Level<'a, D>)
-            })
-            .collect();
+        let (levels, flat) = walls::faces(problem.domain);
+        let interfaces = walls::interfaces(problem);
         let radius = problem.supports.radius;
         let (least, most) = radius.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), &h| (l.min(h), m.max(h)));
         let index = CellList::new(problem.cloud.points(), most)?;
-        Ok(Self { problem, planes, levels, index, uniform_radius: (least == most).then_some(most) })
+        Ok(Self {
+            problem,
+            planes,
+            levels,
+            flat,
+            interfaces,
+            index,
+            uniform_radius: (least == most).then_some(most),
+        })
     }
 
     /// Memory for one thread.
     pub(super) fn scratch(&self) -> BalanceScratch<'_, D> {
-        let cuts = self.levels.iter().map(|(face, level)| Cut { level: &**level, face: face.0 }).collect();
-        BalanceScratch { cell: CellScratch::default(), cuts, found: Vec::new(), candidates: Vec::new() }
+        BalanceScratch {
+            cell: CellScratch::default(),
+            cuts: cuts(&self.levels),
+            wall_cuts: cuts(&self.flat.levels),
+            found: Vec::new(),
+            candidates: Vec::new(),
+        }
     }
 
     /// The cell of node i, clipped to the domain.
     pub(super) fn cell(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<Cell<D>, MethodError> {
         let x = &self.problem.cloud.points()[i];
+        self.with_candidates(i, scratch, |candidates, searched, container, scratch| {
+            voronoi_cell(x, candidates, searched, container, scratch)
+        })
+    }
+
+    /// The volumes of the regions in the cell of node i, by planes of the interfaces; `None` where there are too many of them.
+    pub(super) fn volumes(
+        &self,
+        i: usize,
+        scratch: &mut BalanceScratch<'_, D>,
+    ) -> Result<Option<Vec<(u16, f64)>>, MethodError> {
+        let x = &self.problem.cloud.points()[i];
+        let label = |x: &[f64; D]| self.problem.regions.label(x, 0.0);
+        let interfaces = Interfaces { walls: &self.interfaces.walls, label: &label };
+        self.with_candidates(i, scratch, |candidates, searched, container, scratch| {
+            voronoi_parts(x, candidates, searched, container, &interfaces, scratch)
+        })
+    }
+
+    /// Calls `make` with ever more nodes, until these are enough.
+    fn with_candidates<T>(
+        &self,
+        i: usize,
+        scratch: &mut BalanceScratch<'_, D>,
+        make: impl Fn(&[(u32, [f64; D])], f64, &Container<'_, D>, &mut CellScratch) -> Result<T, CellError>,
+    ) -> Result<T, MethodError> {
+        let x = &self.problem.cloud.points()[i];
         let bounds = self.problem.domain.bounds();
-        let BalanceScratch { cell, cuts, found, candidates } = scratch;
-        let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts };
+        let BalanceScratch { cell, cuts, wall_cuts, found, candidates } = scratch;
+        let flat = &self.flat;
+        let walls = Walls { walls: &flat.walls, beyond: &*flat.beyond, cuts: wall_cuts };
+        let walls = (!flat.walls.is_empty()).then_some(walls);
+        let container = Container { min: bounds.min, max: bounds.max, planes: &self.planes, cuts, walls };
         let everything = (0..D).map(|k| (bounds.max[k] - bounds.min[k]).powi(2)).sum::<f64>().sqrt();
         let reach_of = |radius: f64| if radius < everything { radius } else { f64::INFINITY };
         let mut searched = reach_of(self.problem.supports.radius[i]);
@@ -118,7 +164,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             None => self.search(i, searched, found, candidates),
         }
         loop {
-            match voronoi_cell(x, candidates, searched, &container, cell) {
+            match make(candidates, searched, &container, cell) {
                 Err(CellError::Incomplete { needed, .. }) if searched.is_finite() => {
                     searched = reach_of(needed.clamp(SEARCH_GROWTH * searched, 2.0 * searched));
                     self.search(i, searched, found, candidates);
@@ -145,7 +191,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
     /// The balance over the cell of node i.
     pub(super) fn row(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<CellRow, MethodError> {
         let cell = self.cell(i, scratch)?;
-        let parts = self.parts(i, &cell);
+        let parts = self.parts(i, &cell, scratch)?;
         let mut row = CellRow {
             entries: Vec::with_capacity(cell.faces.len()),
             row_sum: parts.iter().map(|part| part.reaction).sum(),
@@ -275,12 +321,18 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             condition.as_flux(eta).ok_or_else(without_flux)
         };
         let height = (0..D).map(|k| face.normal[k] * (face.centroid[k] - x[k])).sum::<f64>();
-        let foot = std::array::from_fn(|k| x[k] + height * face.normal[k]);
+        let mut foot: [f64; D] = std::array::from_fn(|k| x[k] + height * face.normal[k]);
+        let mut way = height;
+        // Round a re-entrant edge the foot is beside the piece, or the node behind its plane.
+        if self.is_flat(id) && !self.is_on_boundary(&foot, height) {
+            foot = face.centroid;
+            way = (0..D).map(|k| (foot[k] - x[k]).powi(2)).sum::<f64>().sqrt();
+        }
         match at(&face.centroid)? {
             Condition::Dirichlet(_) => {
                 // A piece through the node itself belongs to a node whose value is prescribed.
-                let (Condition::Dirichlet(value), true) = (at(&foot)?, height != 0.0) else { return Ok(()) };
-                let conducts = face.area * eta / height.abs();
+                let (Condition::Dirichlet(value), true) = (at(&foot)?, way != 0.0) else { return Ok(()) };
+                let conducts = face.area * eta / way.abs();
                 let label = problem.labels[i];
                 let carries = face.area * self.velocity([label; 2], &face.centroid, &face.normal);
                 let conducts = conducts * bernoulli(carries / conducts);
@@ -290,7 +342,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             Condition::Robin { .. } => {
                 let (a, g) = to_flux(&at(&foot)?)?;
                 // The chord of a curved face may lie on the inner side of a node on the boundary.
-                let resistance = if a > 0.0 { height.max(0.0) / eta } else { 0.0 };
+                let resistance = if a > 0.0 { way.max(0.0) / eta } else { 0.0 };
                 let area = face.area / (1.0 + a * resistance);
                 row.row_sum += area * a;
                 row.rhs += area * g;
@@ -298,6 +350,18 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             condition => row.rhs += face.area * to_flux(&condition)?.1,
         }
         Ok(())
+    }
+
+    /// Whether a face of the domain is made of flat faces with edges.
+    fn is_flat(&self, id: FaceId) -> bool {
+        self.flat.levels.iter().any(|(face, _)| *face == id)
+    }
+
+    /// Whether the foot of a node on a flat face, at a height above the node, is on the boundary.
+    fn is_on_boundary(&self, foot: &[f64; D], height: f64) -> bool {
+        let domain = self.problem.domain;
+        let size = domain.bounds().diameter();
+        height >= -ON_BOUNDARY * size && domain.level(foot).abs() <= ON_BOUNDARY * size
     }
 }
 

@@ -101,7 +101,7 @@ impl<const D: usize> CellBalance<'_, D> {
             stored: rate * part.capacity,
             taken: [part.reaction * u[i], 0.0],
         };
-        let parts: Vec<CellContent> = self.parts(i, &cell).into_iter().map(content).collect();
+        let parts: Vec<CellContent> = self.parts(i, &cell, scratch)?.into_iter().map(content).collect();
         let mut lacks: f64 = parts.iter().map(|part| part.stored + part.taken[0] - part.arises).sum();
         let mut carried = 0.0;
         let mut flows = CellFlows { parts, ..CellFlows::default() };

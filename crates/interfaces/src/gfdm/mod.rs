@@ -11,6 +11,7 @@ mod params;
 mod select;
 mod source;
 mod strong;
+mod walls;
 
 use std::time::Instant;
 

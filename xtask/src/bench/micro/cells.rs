@@ -51,7 +51,7 @@ fn cells<const D: usize>(
 /// All cells; counts those that nodes beyond the radius might touch, which a method would search farther for.
 fn all<const D: usize>(points: &[[f64; D]], lists: &NeighborLists, radius: f64) -> Result<usize, CellError> {
     let planes = box_planes(&[0.0; D], &[1.0; D]);
-    let container = Container { min: [0.0; D], max: [1.0; D], planes: &planes, cuts: &[] };
+    let container = Container { min: [0.0; D], max: [1.0; D], planes: &planes, cuts: &[], walls: None };
     (0..points.len())
         .into_par_iter()
         .map_init(

@@ -275,14 +275,13 @@ pub(super) const CASES: [Case; 21] = [
     Case {
         case: "die-3d",
         title: "Die on a spreader, in space",
-        about: "A quarter of it: 12.5 W in and out. (Cells of `gfdm-conservative` do not follow the edges of a domain that is made of boxes.)",
+        about: "A quarter of it: 12.5 W in and out.",
         scene: desk::die_3d,
         conditions: &["bottom", ""],
         parameters: &[0.15],
         quick: 0,
         coarsest: 0.5,
         space: true,
-        compared: false,
         bounds: &[
             missed(plan(0, 1e-2, 1e-2), 1.5e-2, 1e-2, "the die is one spacing thick"),
             plan(1, 5e-3, 1e-3),

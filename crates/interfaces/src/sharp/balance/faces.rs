@@ -113,7 +113,7 @@ pub(super) fn cell_of<const D: usize, const N: usize>(
     let min: [f64; N] = std::array::from_fn(|k| least[k].max(x[k] - reach));
     let max: [f64; N] = std::array::from_fn(|k| most[k].min(x[k] + reach));
     let planes = box_planes(&min, &max);
-    let container = Container { min, max, planes: &planes, cuts: &[] };
+    let container = Container { min, max, planes: &planes, cuts: &[], walls: None };
     let mut found = Vec::new();
     // Amid others of its region a cell is small; where there are none beyond, it reaches as far as the box.
     for radius in [NEARBY * spacing, 2.0 * reach * (N as f64).sqrt() * SEARCH_MARGIN] {
