@@ -11,6 +11,8 @@ pub struct NodalField {
     pub dimension: usize,
     /// Coordinates; those beyond the dimension are zero.
     pub points: Vec<[f64; 3]>,
+    /// How far apart nodes are there.
+    pub spacing: Vec<f64>,
     /// The solution.
     pub u: Vec<f64>,
     /// Its gradient, each node in its own region.
@@ -27,6 +29,9 @@ pub struct NodalField {
     pub kind: Vec<RowKind>,
     /// The estimated error, where the method is compared with itself by polynomials of one degree more, on the same nodes.
     pub estimate: Option<Vec<f64>>,
+    /// How large the own part of every node in the error is, where there is an estimate: what its neighbours do not say of the difference
+    /// of the two solutions that the estimate compares, or by how much what the data do between the nodes changes u.
+    pub indicator: Option<Vec<f64>>,
     /// What the stencil and the row of the node look like, where the plan asks for it.
     pub diagnosis: Option<Vec<NodeDiagnosis>>,
 }
@@ -60,11 +65,13 @@ impl NodalField {
         Self {
             dimension: D,
             points: discrete.cloud.points().iter().map(padded).collect(),
+            spacing: discrete.cloud.spacing().to_vec(),
             u: u.to_vec(),
             gradient: gradient.map(|g| g.iter().map(padded).collect()),
             velocity: None,
             exact,
             estimate: None,
+            indicator: None,
             eta: discrete.eta.clone(),
             region: discrete.labels.clone(),
             kind: kinds.to_vec(),

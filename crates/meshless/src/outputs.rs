@@ -162,6 +162,7 @@ fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
     let mut fields = vec![
         VtuField::scalars("u", field.u.clone()),
         VtuField::scalars("eta", field.eta.clone()),
+        VtuField::scalars("spacing", field.spacing.clone()),
         regions(solution),
     ];
     // In free space there are no rows.
@@ -185,6 +186,9 @@ fn vtu(solution: &Solution, path: &Path) -> Result<(), Error> {
     }
     if let Some(estimate) = &field.estimate {
         fields.push(VtuField::scalars("estimated_error", estimate.clone()));
+    }
+    if let Some(indicator) = &field.indicator {
+        fields.push(VtuField::scalars("indicator", indicator.clone()));
     }
     if let Some(exact) = &field.exact {
         fields.push(VtuField::scalars("error", field.u.iter().zip(exact).map(|(u, e)| u - e).collect()));

@@ -3,6 +3,7 @@
 //! Every scene takes a parameter (mostly a diffusivity), a spacing and a seed. Its probes are the points at which
 //! [`references`] knows the solution.
 
+pub mod adaptive;
 pub mod corners;
 pub mod desk;
 pub mod plates;

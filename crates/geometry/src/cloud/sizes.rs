@@ -79,8 +79,20 @@ impl<const D: usize> Sizes<D> {
             let places = &self.places[node.start as usize..(node.start + node.count) as usize];
             return places.iter().fold(best, |best, size| best.min(size.grown(distance(x, &size.at))));
         }
-        let best = self.below(at + 1, x, best);
-        self.below(node.start as usize, x, best)
+        // The child that may ask for less first: then the other one seldom can.
+        let mut children = [at + 1, node.start as usize].map(|child| {
+            let node = &self.boxes[child];
+            (grown(node.least, node.within, node.squared(x).sqrt()), child)
+        });
+        if children[1].0 < children[0].0 {
+            children.swap(0, 1);
+        }
+        children.iter().fold(
+            best,
+            |best, &(least, child)| {
+                if least >= best { best } else { self.below(child, x, best) }
+            },
+        )
     }
 
     /// The nearest place and what is asked for there.

@@ -31,7 +31,25 @@ impl<const D: usize> RegionMap<D> {
         gaps: &GapParams,
     ) -> Result<f64, GeometryError> {
         let plain = check_size(domain, &params.spacing, params.max_nodes)?;
+        let refined = self.foresee_gaps(domain, params, gaps)?;
+        if refined.is_plain() {
+            return Ok(plain);
+        }
+        let inside = Cells { domain, refined: &refined, limit: params.max_nodes }.all()?.nodes;
+        Ok(inside + half_layer(domain, &refined.spacing())?)
+    }
+
+    /// What layers ask for, as seen from the middles of cells.
+    pub(super) fn foresee_gaps<'a>(
+        &self,
+        domain: &Domain<D>,
+        params: &'a CloudParams<D>,
+        gaps: &GapParams,
+    ) -> Result<Refined<'a, D>, GeometryError> {
         let mut refined = Refined::new(&params.spacing);
+        if self.len() == 1 {
+            return Ok(refined);
+        }
         for _ in 1..LOOKS {
             let cells = Cells { domain, refined: &refined, limit: params.max_nodes }.all()?;
             let near = |(x, spacing): &([f64; D], f64)| self.thin_near(x, *spacing, domain, gaps.across);
@@ -44,11 +62,7 @@ impl<const D: usize> RegionMap<D> {
                 break;
             }
         }
-        if refined.is_plain() {
-            return Ok(plain);
-        }
-        let inside = Cells { domain, refined: &refined, limit: params.max_nodes }.all()?.nodes;
-        Ok(inside + half_layer(domain, &refined.spacing())?)
+        Ok(refined)
     }
 }
 

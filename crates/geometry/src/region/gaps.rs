@@ -1,7 +1,7 @@
 //! Clouds that resolve the layers and gaps between interfaces.
 
 use super::{RegionMap, ThinLayer};
-use crate::cloud::{Cloud, CloudParams, Size, Sizes, Spacing, generate};
+use crate::cloud::{Cloud, CloudParams, Size, Sizes, Spacing, check_size, generate};
 use crate::domain::Domain;
 use crate::error::GeometryError;
 use crate::spatial_hash::SpatialHash;
@@ -39,8 +39,10 @@ impl<const D: usize> RegionMap<D> {
         params: &CloudParams<D>,
         gaps: &GapParams,
     ) -> Result<Cloud<D>, GeometryError> {
-        let mut cloud = generate(domain, params)?;
-        let mut refined = Refined::new(&params.spacing);
+        // Cells see nearly all that nodes will see, without clouds that are thrown away.
+        check_size(domain, &params.spacing, params.max_nodes)?;
+        let mut refined = self.foresee_gaps(domain, params, gaps)?;
+        let mut cloud = generate(domain, &CloudParams { spacing: refined.spacing(), ..params.clone() })?;
         for _ in 1..CLOUDS {
             if !refined.resolve(&self.thin_layers(&cloud, domain, gaps.across), gaps)? {
                 break;
@@ -109,7 +111,7 @@ impl<'a, const D: usize> Refined<'a, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloud::{Layout, check_size, quality};
+    use crate::cloud::{Layout, quality};
     use crate::shape::Shape;
 
     const GAPS: GapParams = GapParams { across: 2.0, least: 1e-4 };

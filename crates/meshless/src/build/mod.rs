@@ -3,6 +3,7 @@
 mod checks;
 mod conditions;
 mod corners;
+mod features;
 mod fields;
 mod line;
 mod mesh;
@@ -22,7 +23,7 @@ pub(crate) use fields::{
 };
 pub(crate) use line::{Line, LineData, lines};
 pub(crate) use mesh::{free_mesh, mesh_cells, particles};
-pub(crate) use points::{Placed, place};
+pub(crate) use points::{Placed, has_features, place};
 pub(crate) use shapes::{domain, regions, with_spacing_times};
 pub(crate) use slits::slits;
 pub(crate) use smooth::check_diffusivity_is_smooth;

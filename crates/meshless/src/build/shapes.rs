@@ -157,6 +157,8 @@ pub(crate) fn with_spacing_times(scene: &Scene, factor: f64) -> Scene {
     if let Some(corners) = &mut coarse.points.corners {
         corners.across /= factor;
     }
+    coarse.points.adapted.times *= factor;
+    coarse.points.adapted.wanted_times *= factor;
     let ExprField { text, expr, .. } = &scene.points.spacing;
     let variables = &["x", "y", "z"][..scene.dimension];
     coarse.points.spacing.expr = match expr.as_constant() {

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use meshless_interfaces::{Sampler, SystemParams, SystemSolution, solve};
 use rayon::prelude::*;
 
-use super::{Silent, Solved, solve_in};
+use super::{Silent, Solved, indicator, solve_in};
 use crate::norms::ErrorNorms;
 use crate::plan::{MethodParams, Plan, Stage};
 use crate::report::{ContactReport, Estimate, ThinLayerReport};
@@ -92,6 +92,8 @@ pub(crate) struct Estimated<const D: usize> {
     pub(crate) estimate: Estimate,
     /// Where the method is compared with itself on the same cloud: `u` minus the finer solution at every node.
     pub(crate) differences: Option<Vec<f64>>,
+    /// How large the own part of every node in the error is, in units of u.
+    pub(crate) indicator: Option<Vec<f64>>,
     pub(crate) other: Other<D>,
 }
 
@@ -104,7 +106,7 @@ impl<const D: usize> Estimated<D> {
 
 impl<const D: usize> From<Estimate> for Estimated<D> {
     fn from(estimate: Estimate) -> Self {
-        Self { estimate, differences: None, other: Other::None }
+        Self { estimate, differences: None, indicator: None, other: Other::None }
     }
 }
 
@@ -119,7 +121,7 @@ pub(crate) fn estimate<const D: usize>(
     if let Some(why_not) = unresolved.why_not() {
         return Ok(Estimated::none(why_not));
     }
-    let estimated = match plan.finer() {
+    let mut estimated = match plan.finer() {
         Some(finer) => {
             let mut estimated = against_finer(scene, plan, finer, solved)?;
             if estimated.estimate.l2.is_some() && solved.discrete.cloud.len() <= FEW {
@@ -135,6 +137,12 @@ pub(crate) fn estimate<const D: usize>(
     if estimated.estimate.l2.is_some_and(|l2| !l2.is_finite()) {
         let why_not = "the squares of u are beyond double precision: take other units".to_owned();
         return Ok(Estimated { differences: estimated.differences, ..Estimated::none(why_not) });
+    }
+    if let Some(own) = &mut estimated.indicator {
+        let problem = solved.discrete.problem();
+        let of_data = indicator::of_data(&problem, &solved.system.u, plan.method.params.order());
+        own.iter_mut().zip(of_data).for_each(|(own, data)| *own = own.max(data));
+        *own = indicator::smoothed(problem.supports.lists, own);
     }
     Ok(estimated)
 }
@@ -213,8 +221,11 @@ fn against_finer<const D: usize>(
     let mut estimate = norms.estimate(scene, 1.0);
     let constants = of_constants(scene, solved, &differences, &measures);
     take_larger(&mut estimate, &Estimate { regions: constants, ..Estimate::default() });
-    let differences = Some(differences);
-    Ok(Estimated { estimate, differences, other: Other::Finer { method: finer, system: better, shift } })
+    let (cloud, lists) = (problem.cloud, problem.supports.lists);
+    let indicator =
+        Some(indicator::of_differences(cloud.points(), lists, &solved.discrete.labels, &differences));
+    let other = Other::Finer { method: finer, system: better, shift };
+    Ok(Estimated { estimate, differences: Some(differences), indicator, other })
 }
 
 /// Relative errors of regions in which u is constant: two solutions may agree by chance in one number, but that is known from the
@@ -306,6 +317,15 @@ fn against_coarser<const D: usize>(
         // Relative to the extrapolated solution: the size of one that is far off says nothing of its error.
         norms.add(region, measure, difference - shift, value - (difference - shift) / times);
     });
+    let indicator = {
+        let (cloud, lists) = (&coarse.discrete.cloud, coarse.discrete.problem().supports.lists);
+        let of_nodes = |(i, value): (usize, &Option<(f64, u16)>)| {
+            value.map_or(0.0, |(value, _)| (coarse.system.u[i] - value - shift) / times)
+        };
+        let differences: Vec<f64> = values.iter().enumerate().map(of_nodes).collect();
+        let own = indicator::of_differences(cloud.points(), lists, &coarse.discrete.labels, &differences);
+        indicator::at_nearest(cloud.points(), cloud.spacing(), &own, fine.discrete.cloud.points())
+    };
     let scene_at_end = coarse_scene.time.as_ref().map(|time| coarse_scene.at_time(time.end));
     let estimate = norms.estimate(scene, times);
     let other = Other::Coarser {
@@ -316,5 +336,5 @@ fn against_coarser<const D: usize>(
         shift: -shift,
         times,
     };
-    Ok(Estimated { estimate, differences: None, other })
+    Ok(Estimated { estimate, differences: None, indicator, other })
 }

@@ -110,6 +110,8 @@ pub(super) fn execute<const D: usize>(
     let pad = |p: &[f64; D]| std::array::from_fn(|a| if a < D { p[a] } else { 0.0 });
     let field = NodalField {
         estimate: None,
+        indicator: None,
+        spacing: vec![source.mesh.spacing().into_iter().fold(f64::INFINITY, f64::min); source.points.len()],
         dimension: D,
         points: source.points.iter().map(pad).collect(),
         gradient: gradient.map(|g| g.iter().map(pad).collect()),

@@ -1,5 +1,6 @@
 //! From a plan to a solution, stage by stage; what the plan skips is not built.
 
+mod adapt;
 mod balance;
 mod contacts;
 mod corners;
@@ -9,6 +10,7 @@ mod figures;
 mod fluxes;
 mod free_space;
 mod honest;
+mod indicator;
 mod linear;
 mod measure;
 mod picture;
@@ -246,7 +248,7 @@ fn execute_in<const D: usize>(
     let thin_layer = thin_layer(scene, plan, &problem)?;
     let contacts = contacts(scene, &problem);
     let corners = corners::found(plan, &problem, &solved.discretization);
-    let Estimated { mut estimate, differences, other } = if plan.runs(Stage::Estimate) {
+    let Estimated { mut estimate, differences, indicator, other } = if plan.runs(Stage::Estimate) {
         estimate(whole, plan, &solved, &Unresolved { thin_layer: thin_layer.as_ref(), contacts: &contacts })?
     } else {
         Estimated::none("not asked for".to_owned())
@@ -295,7 +297,7 @@ fn execute_in<const D: usize>(
     seconds.total = start.elapsed().as_secs_f64();
     let kinds = &solved.discretization.kinds;
     let field = NodalField::new(&solved.discrete, u, gradient, exact.map(|e| e.values), kinds, diagnosis);
-    let field = NodalField { estimate: differences, ..field };
+    let field = NodalField { estimate: differences, indicator, ..field };
     let mut report = summary::report(scene, plan, &solved, errors, estimate, seconds, probes);
     figures::of_extrema(scene, &solved, (&other, &report.estimate), &mut report.extrema);
     let corners = corners::report(&corners, problem.domain.bounds().diameter());

@@ -7,7 +7,7 @@
 
 use std::time::Instant;
 
-use super::{Checkpoint, Progress, Solution, execute_once};
+use super::{Checkpoint, Progress, Solution, adapt, execute_once};
 use crate::plan::{AccuracyPlan, Plan};
 use crate::report::{AccuracyReport, ContactReport, FluxReport, Report, Rung, ThinLayerReport};
 use crate::scene::{AccuracyOf, Scene};
@@ -30,6 +30,12 @@ const BLIND_RATIO: f64 = 0.7;
 
 /// The smallest such ratio, towards the spacing at which a layer is seen.
 const LEAST_BLIND_RATIO: f64 = 0.2;
+
+/// The part of the order of the method that is counted on after an estimate that did not fall.
+const BY_CHANCE: f64 = 0.5;
+
+/// How much coarser gaps are left where they would take too many nodes.
+const COARSER_GAP: f64 = 4.0;
 
 /// The order that is counted on at least, and how far above that of the method an observed one is believed.
 const LEAST_ORDER: f64 = 0.5;
@@ -57,10 +63,14 @@ pub(super) fn refine(
     }
     let mut rungs: Vec<Rung> = Vec::new();
     let (mut refused, mut thin) = (None, None);
-    let mut factor = 1.0;
+    let (mut rung_scene, mut factor) = (scene.clone(), 1.0);
+    let adapts = scene.points.corners.is_some();
     while rungs.len() < MAX_RUNGS {
-        let rung_scene = build::with_spacing_times(scene, factor);
-        let rung_plan = Plan::new(&rung_scene)?;
+        let rung_plan = if rungs.is_empty() && adapts {
+            with_gaps_in_reach(&mut rung_scene, goal.max_nodes)?
+        } else {
+            Plan::new(&rung_scene)?
+        };
         if rung_plan.predicted.unknowns > goal.max_nodes {
             let needed = rung_plan.predicted.unknowns;
             return Err(unmet(scene, goal, &rungs, refused, thin, Some(needed)));
@@ -94,8 +104,8 @@ pub(super) fn refine(
         };
         rungs.push(Rung { estimate, seconds: start.elapsed().as_secs_f64(), ..rung });
         let share = if rungs.len() > 1 { SHARE } else { SHARE_AT_ONCE };
-        if let Some(mut solution) = solution
-            && estimate.is_some_and(|e| e <= share * goal.tolerance)
+        if estimate.is_some_and(|e| e <= share * goal.tolerance)
+            && let Some(mut solution) = solution
         {
             solution.report.accuracy =
                 Some(AccuracyReport { tolerance: goal.tolerance, of: goal.of.as_str().to_owned(), rungs });
@@ -103,7 +113,7 @@ pub(super) fn refine(
                 solution.report.accuracy.iter().flat_map(|a| &a.rungs).map(|r| r.seconds).sum();
             return Ok(solution);
         }
-        if out_of_reach(&rungs, goal) {
+        if out_of_reach(&rungs, goal, scene.dimension) {
             return Err(unmet(scene, goal, &rungs, refused, thin, None));
         }
         let unseen = thin.as_ref().filter(|layer| !layer.seen).zip(rungs.last());
@@ -111,7 +121,30 @@ pub(super) fn refine(
             .map(|(layer, rung)| layer.thickness / rung.spacing)
             .filter(|ratio| ratio.is_finite())
             .map_or(BLIND_RATIO, |ratio| ratio.clamp(LEAST_BLIND_RATIO, BLIND_RATIO));
-        factor *= next_ratio(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance, blind);
+        let next = next(&rungs, plan.expected_order() as f64, SHARE * goal.tolerance, scene.dimension);
+        let asked = match (next, &solution) {
+            // What raises an estimate is not where the indicators are.
+            (Some(next), Some(solution)) if adapts && solution.report.estimate.raised_by.is_none() => {
+                let ratios = (RATIOS.0, RATIOS.1, next.ratio());
+                adapt::wanted(&rung_scene, &solution.field, (next.order, next.factor), ratios)
+            }
+            _ => None,
+        };
+        match asked {
+            Some(wanted) => {
+                let adapted = &mut rung_scene.points.adapted;
+                (adapted.wanted, adapted.wanted_times) = (wanted, 1.0);
+            }
+            None => {
+                let ratio = next.map_or(blind, Next::ratio);
+                factor *= ratio;
+                let before = std::mem::replace(&mut rung_scene, build::with_spacing_times(scene, factor));
+                let adapted = &mut rung_scene.points.adapted;
+                (adapted.wanted, adapted.least_gap) =
+                    (before.points.adapted.wanted, before.points.adapted.least_gap);
+                adapted.wanted_times = ratio * before.points.adapted.wanted_times;
+            }
+        }
     }
     Err(unmet(scene, goal, &rungs, refused, thin, None))
 }
@@ -138,30 +171,80 @@ fn relative_error(report: &Report, of: AccuracyOf) -> Option<f64> {
     }
 }
 
+/// The plan of the first cloud. Gaps that are resolved by more nodes than are allowed are left as thin as they are.
+fn with_gaps_in_reach(scene: &mut Scene, max_nodes: f64) -> Result<Plan, Error> {
+    let plan = Plan::new(scene);
+    let is_within =
+        |plan: &Result<Plan, Error>| plan.as_ref().is_ok_and(|p| p.predicted.unknowns <= max_nodes);
+    if is_within(&plan) || scene.points.gaps.is_some() {
+        return plan;
+    }
+    let mut coarser = scene.clone();
+    while coarser.points.adapted.least_gap < 1.0 {
+        coarser.points.adapted.least_gap *= COARSER_GAP;
+        let other = Plan::new(&coarser);
+        if is_within(&other) {
+            *scene = coarser;
+            return other;
+        }
+    }
+    plan
+}
+
+/// The distance of nodes that a cloud of so many would have were it even: what errors of adapted clouds fall with.
+fn even(rung: &Rung, dimension: usize) -> f64 {
+    (rung.unknowns as f64).powf(-1.0 / dimension as f64)
+}
+
+/// The order at which errors fall from one cloud to another.
+fn order_between(before: (&Rung, f64), last: (&Rung, f64), dimension: usize) -> f64 {
+    (before.1 / last.1).ln() / (even(before.0, dimension) / even(last.0, dimension)).ln()
+}
+
 /// Whether what the balance leaves over falls so slowly that no cloud which is allowed has the tolerance.
-fn out_of_reach(rungs: &[Rung], goal: AccuracyPlan) -> bool {
+fn out_of_reach(rungs: &[Rung], goal: AccuracyPlan, dimension: usize) -> bool {
     let mut known = rungs.iter().rev().filter(|rung| rung.raised_by.is_some());
     let (Some(last), Some(before)) = (known.next(), known.next()) else { return false };
     let (Some(now), Some(then)) = (last.estimate, before.estimate) else { return false };
     if rungs.last().is_some_and(|rung| rung.raised_by.is_none()) {
         return false;
     }
-    let order = (then / now).ln() / (before.spacing / last.spacing).ln();
+    let order = order_between((before, then), (last, now), dimension);
     let ratio = (now / (SHARE * goal.tolerance)).powf(1.0 / order.max(LEAST_ORDER));
     order < LEAST_RAISED_ORDER && last.unknowns as f64 * ratio * ratio > goal.max_nodes
 }
 
-/// The ratio of the next spacing to the last one.
-fn next_ratio(rungs: &[Rung], nominal: f64, wanted: f64, blind: f64) -> f64 {
-    let mut known =
-        rungs.iter().rev().filter_map(|r| r.estimate.filter(|e| *e > 0.0).map(|e| (r.spacing, e)));
-    let Some((spacing, last)) = known.next() else { return blind };
-    if rungs.last().is_some_and(|r| r.estimate.is_none()) {
-        return blind;
+/// What the next cloud has to bring.
+#[derive(Debug, Clone, Copy)]
+struct Next {
+    /// What the error has to fall by.
+    factor: f64,
+    /// The order that is counted on.
+    order: f64,
+}
+
+impl Next {
+    /// The ratio of the next spacing to the last one, where all fall alike.
+    fn ratio(self) -> f64 {
+        self.factor.powf(1.0 / self.order).clamp(RATIOS.0, RATIOS.1)
     }
-    let observed = known.next().map(|(before, error)| (error / last).ln() / (before / spacing).ln());
-    let order = observed.map_or(nominal, |q| q.clamp(LEAST_ORDER, nominal + ORDER_ABOVE));
-    (wanted / last).powf(1.0 / order).clamp(RATIOS.0, RATIOS.1)
+}
+
+/// The same after the clouds that were tried; `None` where the last one gave no estimate.
+fn next(rungs: &[Rung], nominal: f64, wanted: f64, dimension: usize) -> Option<Next> {
+    let mut known = rungs.iter().rev().filter_map(|r| r.estimate.filter(|e| *e > 0.0).map(|e| (r, e)));
+    let last = known.next()?;
+    if rungs.last().is_some_and(|r| r.estimate.is_none()) {
+        return None;
+    }
+    let observed = known.next().map(|before| order_between(before, last, dimension));
+    let order = match observed.filter(|q| q.is_finite()) {
+        // An estimate that did not fall was small by chance before.
+        Some(q) if q <= 0.0 => (BY_CHANCE * nominal).max(LEAST_ORDER),
+        Some(q) => q.clamp(LEAST_ORDER, nominal + ORDER_ABOVE),
+        None => nominal,
+    };
+    Some(Next { factor: wanted / last.1, order })
 }
 
 /// Why the tolerance was not met: what was reached, and what to do.

@@ -70,7 +70,7 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
             (MethodName::ParticleDifferenceExtended, why)
         }
         (MethodName::Auto, Some(goal)) => {
-            let choice = goal.choose(scene, survey);
+            let choice = goal.choose(scene, survey)?;
             order = choice.order;
             (choice.name, choice.why)
         }

@@ -54,6 +54,7 @@ pub(super) fn plan(scene: &Scene, survey: Survey) -> Result<Plan, Error> {
         fallback: None,
         refine_gaps_to: None,
         adapts: false,
+        adapts_to_data: false,
         // Nothing fixes a constant because nothing is needed to: u decays, or grows as it must.
         effects: survey.effects.into_iter().filter(|e| !matches!(e, Effect::PureNeumann)).collect(),
         solver: SolverParams::default(),

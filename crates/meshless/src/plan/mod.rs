@@ -16,9 +16,9 @@ mod steps;
 
 use meshless_sparse::SolverParams;
 
-use crate::Error;
 use crate::build::AtCorners;
 use crate::scene::{MethodName, Scene};
+use crate::{Error, build};
 
 pub use accuracy::AccuracyPlan;
 pub use effects::Effect;
@@ -41,6 +41,8 @@ pub struct Plan {
     pub refine_gaps_to: Option<f64>,
     /// Whether the cloud is finer round corners at which the solution is singular.
     pub adapts: bool,
+    /// Whether it is finer where the data vary below the spacing.
+    pub adapts_to_data: bool,
     /// The linear solver.
     pub solver: SolverParams,
     /// The error to reach by smaller and smaller spacings; without one the scene is solved once.
@@ -185,8 +187,10 @@ impl Plan {
             return Err(scene.domain.place.error(message, help).into());
         }
         let has_corners = survey.has(|effect| matches!(effect, Effect::Corners { .. }));
+        let adapts_to_data = build::has_features(scene, method.params.order())?;
         Ok(Self {
             dimension: scene.dimension,
+            adapts_to_data,
             adapts: scene.points.corners.is_some() && has_corners,
             effects: survey.effects,
             fallback: fallback::of(scene, &method),

@@ -108,6 +108,12 @@ impl fmt::Display for Plan {
                 "cloud       finer round the corners, and growing by a quarter of the distance from there"
             )?;
         }
+        if self.adapts_to_data {
+            writeln!(
+                f,
+                "cloud       finer where sources, diffusivities or conditions vary below the spacing"
+            )?;
+        }
         writeln!(f, "solver      {}", self.solver_name())?;
         if let Some([forward, back]) = self.transforms() {
             writeln!(f, "transforms  forward: {}; back: {}", forward.join(", "), back.join(", "))?;

@@ -14,8 +14,8 @@ use super::points_file::PointsFileSpec;
 use super::reader::{Table, Value};
 use super::shapes::{bounds, keys_with_shape, required_shape};
 use super::spec::{
-    ALL_FACES, BOX_FACES, CornerSpec, DomainSpec, GapSpec, HoleSpec, LayoutName, OUTER_FACE, PointsSpec,
-    ShapeSpec,
+    ALL_FACES, Adapted, BOX_FACES, CornerSpec, DomainSpec, GapSpec, HoleSpec, LayoutName, OUTER_FACE,
+    PointsSpec, ShapeSpec,
 };
 
 /// Seed of the random numbers, unless the scene gives one.
@@ -97,6 +97,7 @@ pub(super) fn points(
                 file: None,
                 gaps: None,
                 corners: adapts(root, refined).then_some(CornerSpec { across: ACROSS }),
+                adapted: Adapted::default(),
                 place: place.clone(),
             }),
             None => Err(root.missing("points", help)),
@@ -114,6 +115,7 @@ pub(super) fn points(
         file: None,
         gaps: gaps(&table, layout, is_open(root))?,
         corners: adapted(&table, layout, root, refined)?,
+        adapted: Adapted::default(),
         spacing: match (table.get("spacing"), first()) {
             (Some(value), _) => in_range(value.expression()?.check_positive()?)?,
             (None, Some((spacing, place))) => ExprField::constant(spacing, place),
@@ -153,12 +155,12 @@ fn gaps(table: &Table<'_>, layout: LayoutName, open: bool) -> Result<Option<GapS
     Ok(Some(GapSpec { least: value.positive()?, across: thin_layers::RESOLVED }))
 }
 
-/// Whether the cloud of a scene adapts to corners where it says nothing of that: steady ones that ask for a tolerance.
+/// Whether the cloud of a scene adapts where it says nothing of that: steady ones that ask for a tolerance.
 fn adapts(root: &Table<'_>, refined: bool) -> bool {
-    refined && root.dimension > 1 && !root.has("time") && !is_open(root)
+    refined && !root.has("time") && !is_open(root)
 }
 
-/// Whether the cloud adapts to corners.
+/// Whether the cloud adapts.
 fn adapted(
     table: &Table<'_>,
     layout: LayoutName,
@@ -209,6 +211,7 @@ fn points_of_file(
         seed: DEFAULT_SEED,
         gaps: None,
         corners: None,
+        adapted: Adapted::default(),
         file: Some(PointsFileSpec { path: PathBuf::from(file.text()?), spaced, thin: 1.0, place }),
         place: table.place.clone(),
     })

@@ -45,6 +45,7 @@ pub use options::{
 pub(crate) use points_file::FilePoints;
 pub use points_file::PointsFileSpec;
 pub use source::{MAX_FILE_BYTES, Place};
+pub(crate) use spec::{Adapted, Features, Wanted};
 pub use spec::{
     BoundarySpec, BoundsSpec, ConditionSpec, CornerSpec, DomainSpec, GapSpec, HoleSpec, InterfaceSpec,
     LayoutName, MethodName, MethodSpec, OutputSpec, PointValues, PointsSpec, RegionSpec, ShapeSpec,

@@ -139,6 +139,8 @@ pub struct PointsSpec {
     pub gaps: Option<GapSpec>,
     /// What spacings corners get at which the solution is singular, if they get any of their own.
     pub corners: Option<CornerSpec>,
+    /// What else the cloud adapts to, where it adapts to corners.
+    pub(crate) adapted: Adapted,
     /// The table in the file.
     pub place: Place,
 }
@@ -157,6 +159,50 @@ pub struct GapSpec {
 pub struct CornerSpec {
     /// So many go on the way to what is next to a corner.
     pub across: f64,
+}
+
+/// What a cloud adapts to beside corners.
+#[derive(Debug, Clone)]
+pub(crate) struct Adapted {
+    /// What the spacings that the data ask for are multiplied by, as the scene's own spacing is.
+    pub(crate) times: f64,
+    /// The smallest spacing in gaps, over the size of the domain, where the scene gives none.
+    pub(crate) least_gap: f64,
+    /// Spacings that a solution asks for.
+    pub(crate) wanted: Arc<Vec<Wanted>>,
+    /// What these are multiplied by.
+    pub(crate) wanted_times: f64,
+    /// What the data ask for, once that is known; shared by copies of the scene.
+    pub(crate) features: Arc<OnceLock<Features>>,
+}
+
+impl Default for Adapted {
+    fn default() -> Self {
+        let (wanted, features) = (Arc::default(), Arc::default());
+        Self { times: 1.0, least_gap: LEAST_GAP, wanted, wanted_times: 1.0, features }
+    }
+}
+
+/// The smallest spacing in gaps, over the size of the domain, of clouds that adapt.
+const LEAST_GAP: f64 = 1e-6;
+
+/// A spacing that is asked for at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Wanted {
+    /// Where; coordinates beyond the dimension are zero.
+    pub(crate) at: [f64; 3],
+    /// The spacing.
+    pub(crate) spacing: f64,
+    /// How far round it the spacing does not grow yet.
+    pub(crate) within: f64,
+}
+
+/// What the data of a scene ask for, for a method of an order and a tolerance.
+#[derive(Debug, Clone)]
+pub(crate) struct Features {
+    pub(crate) order: usize,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) wanted: Vec<Wanted>,
 }
 
 /// How regular a cloud is.

@@ -15,6 +15,14 @@ const LINE_POINTS: [usize; 4] = [8, 16, 32, 64];
 /// How closely two of them must agree, over the sum of the sizes of the parts.
 const AGREE: f64 = 1e-9;
 
+/// The part of a source that lines must see of what nodes see: narrow ones lie between the lines, which then agree on nothing.
+const MISSED: f64 = 0.5;
+
+/// Ratio of the measures of nodes beyond which a cloud is graded, not only at its boundary; and what of an integral over the nodes is in doubt then:
+/// powers of the spacing are the measures of nodes in the mean only.
+const GRADED: f64 = 16.0;
+const IN_GRADED: f64 = 0.1;
+
 /// How much of the volume by the nodes that by the surfaces may differ before it is not believed.
 const PLAUSIBLE: f64 = 0.5;
 
@@ -23,6 +31,16 @@ const PLAUSIBLE: f64 = 0.5;
 pub(super) struct Content {
     pub(super) value: f64,
     pub(super) doubt: f64,
+    /// The integral of the size.
+    pub(super) size: f64,
+}
+
+impl Content {
+    /// Adds a part.
+    pub(super) fn add(&mut self, part: f64) {
+        self.value += part;
+        self.size += part.abs();
+    }
 }
 
 /// A region as its surface has it.
@@ -67,15 +85,23 @@ impl<const D: usize> Body<D> {
     }
 
     /// The integral of a source.
-    pub(super) fn source(&self, field: &Field<D>, nodal: impl FnOnce() -> Content) -> Content {
+    pub(super) fn source(&self, field: &Field<D>, own: impl FnOnce() -> Vec<(f64, f64)>) -> Content {
         match field.as_constant() {
-            Some(value) => Content { value: value * self.volume, doubt: 0.0 },
-            None => (0..D).find_map(|axis| self.along(field, axis)).unwrap_or_else(nodal),
+            Some(value) => {
+                let value = value * self.volume;
+                Content { value, doubt: 0.0, size: value.abs() }
+            }
+            None => {
+                let own = own();
+                let seen = MISSED * self.nodal(&own).size;
+                (0..D).find_map(|axis| self.along(field, axis, seen)).unwrap_or_else(|| self.nodal(&own))
+            }
         }
     }
 
-    /// The integral of a function by its integrals along an axis from the middle of the region; `None` where they do not converge.
-    fn along(&self, field: &Field<D>, axis: usize) -> Option<Content> {
+    /// The integral of a function by its integrals along an axis from the middle of the region; `None` where they do not converge, or
+    /// to less of its size than `seen`, which the nodes see.
+    fn along(&self, field: &Field<D>, axis: usize, seen: f64) -> Option<Content> {
         let mut before: Option<f64> = None;
         let mut values = Vec::new();
         for points in LINE_POINTS {
@@ -91,10 +117,12 @@ impl<const D: usize> Body<D> {
             let places: Vec<[f64; D]> = on_lines.collect();
             values.resize(places.len(), 0.0);
             field.eval(&places, &mut values);
-            let (mut sum, mut size) = (0.0, 0.0);
+            let (mut sum, mut size, mut whole) = (0.0, 0.0, 0.0);
             for ((x, n), values) in self.points.iter().zip(values.chunks(points)) {
                 let mean: f64 = values.iter().zip(&rule).map(|(value, (_, w))| value * w).sum();
                 let part = mean * (x[axis] - self.center[axis]) * n[axis];
+                let mean: f64 = values.iter().zip(&rule).map(|(value, (_, w))| value.abs() * w).sum();
+                whole += (mean * (x[axis] - self.center[axis]) * n[axis]).abs();
                 sum += part;
                 size += part.abs();
             }
@@ -103,8 +131,9 @@ impl<const D: usize> Body<D> {
             }
             if let Some(before) = before
                 && (sum - before).abs() <= AGREE * size
+                && whole >= seen
             {
-                return Some(Content { value: sum, doubt: (sum - before).abs() });
+                return Some(Content { value: sum, doubt: (sum - before).abs(), size: whole });
             }
             before = Some(sum);
         }
@@ -114,6 +143,11 @@ impl<const D: usize> Body<D> {
     /// The integral of what is known at nodes: its mean over those of the region times the volume. How much two halves of the nodes
     /// differ tells how good that is.
     pub(super) fn nodal(&self, own: &[(f64, f64)]) -> Content {
+        let size = {
+            let (volume, sum) =
+                own.iter().fold((0.0, 0.0), |(all, sum), (m, value)| (all + m, sum + m * value.abs()));
+            if volume > 0.0 { sum / volume * self.volume.abs() } else { 0.0 }
+        };
         let mean = |first: usize, step: usize| {
             let some = || own.iter().skip(first).step_by(step);
             let volume: f64 = some().map(|(measure, _)| measure).sum();
@@ -123,7 +157,11 @@ impl<const D: usize> Body<D> {
                 0.0
             }
         };
-        let doubt = if own.len() > 1 { (mean(0, 2) - mean(1, 2)).abs() } else { mean(0, 1).abs() };
-        Content { value: mean(0, 1) * self.volume, doubt: doubt * self.volume.abs() }
+        let halves = if own.len() > 1 { (mean(0, 2) - mean(1, 2)).abs() } else { mean(0, 1).abs() };
+        let (least, most) =
+            own.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), (m, _)| (least.min(*m), most.max(*m)));
+        let of_graded = if most > GRADED * least { IN_GRADED * size } else { 0.0 };
+        let doubt = (halves * self.volume.abs()).max(of_graded);
+        Content { value: mean(0, 1) * self.volume, doubt, size }
     }
 }

@@ -96,7 +96,7 @@ impl<const D: usize> Ledger<D> {
         let own = |label: usize, values: &[f64]| of_region(&problem, &measures, label, values);
         let source =
             |(label, body): (usize, &Body<D>)| match (&problem.materials[label].source, problem.source) {
-                (Some(field), Some(nodal)) => body.source(field, || body.nodal(&own(label, nodal))),
+                (Some(field), Some(nodal)) => body.source(field, || own(label, nodal)),
                 _ => Content::default(),
             };
         let stored = |rates: &Vec<f64>| -> Vec<Content> {
@@ -314,10 +314,11 @@ impl<const D: usize> Ledger<D> {
         }
         for part in &cells.parts {
             let (arises, stays) = (part.arises, part.stored + part.taken[0] + part.taken[1]);
-            sources[part.region as usize].value += part.arises;
-            stored[part.region as usize].value += part.stored;
-            for (sum, part) in taken[part.region as usize].iter_mut().zip(part.taken) {
-                sum.value += part;
+            let region = part.region as usize;
+            sources[region].add(part.arises);
+            stored[region].add(part.stored);
+            for (sum, part) in taken[region].iter_mut().zip(part.taken) {
+                sum.add(part);
             }
             // What arises in the part of a cell beyond the interface comes in through that.
             if part.region != part.cell {
@@ -337,7 +338,7 @@ impl<const D: usize> Ledger<D> {
         let all = |contents: &[Content]| {
             contents.iter().fold((Content::default(), 0.0), |(sum, size), c| {
                 let value = sum.value + c.value;
-                (Content { value, doubt: sum.doubt + c.doubt }, size + c.value.abs())
+                (Content { value, doubt: sum.doubt + c.doubt, size: 0.0 }, size + c.size)
             })
         };
         let over = |flow: &Flow, sources: &[Content], stored: Option<&[Content]>, taken: &[[Content; 2]]| {

@@ -12,6 +12,16 @@ use crate::execute::Boundary;
 const BESIDE: f64 = 2.0 * TIE;
 const LEAST_BESIDE: f64 = 1e-14;
 
+/// How far inside fluxes through the boundary are taken at most, over the length that a point stands for, and over the diameter of the domain
+/// at least: rounding.
+const NEARER: f64 = 1e-3;
+const LEAST_STEP: f64 = 4e-16;
+
+/// How far apart points at a corner are at most, over the length that the farthest of them stands for; and the part of the largest prescribed value by which two
+/// differ that meet.
+const MEET: f64 = 100.0;
+const JUMP: f64 = 1e-3;
+
 /// Cells of a grid in which level sets are looked for, a node.
 const CELLS: f64 = 16.0;
 
@@ -118,7 +128,41 @@ fn walls<const D: usize>(
             }
         }
     }
+    if D == 2 {
+        gather(&mut walls, step_of(problem, rule), bounds.diameter());
+    }
     walls
+}
+
+/// Towards a corner points gather, and so have the places inside at which fluxes are taken: else those of the last of them are not infinite as
+/// they are on the boundary. But where two prescribed values meet: there fluxes on both sides have to cancel.
+fn gather<const D: usize>(walls: &mut [Wall<D>], step: f64, size: f64) {
+    let is_near = |wall: &Wall<D>| NEARER * wall.element.area < step;
+    let value = |wall: &Wall<D>| match wall.condition {
+        Condition::Dirichlet(value) => Some(value),
+        _ => None,
+    };
+    let largest = walls.iter().filter_map(&value).map(f64::abs).fold(0.0, f64::max);
+    let near: Vec<([f64; D], f64)> = walls
+        .iter()
+        .filter(|wall| is_near(wall))
+        .filter_map(|wall| Some((wall.element.at, value(wall)?)))
+        .collect();
+    let apart = |x: &[f64; D], y: &[f64; D]| (0..D).map(|k| (x[k] - y[k]).powi(2)).sum::<f64>().sqrt();
+    // Points as near to the corner as each other are no farther apart than some lengths that they stand for.
+    let reach = MEET * step / NEARER;
+    let jumps: Vec<[f64; D]> = (near.iter().enumerate())
+        .filter(|(k, (x, u))| {
+            near[k + 1..].iter().any(|(y, v)| (u - v).abs() > JUMP * largest && apart(x, y) < reach)
+        })
+        .map(|(_, (x, _))| *x)
+        .collect();
+    for wall in walls.iter_mut().filter(|wall| is_near(wall)) {
+        if !jumps.iter().any(|x| apart(x, &wall.element.at) < reach) {
+            let nearer = (NEARER * wall.element.area).max(LEAST_STEP * size);
+            wall.within = beside(&wall.element, -nearer.min(step));
+        }
+    }
 }
 
 fn seams<const D: usize>(problem: &Problem<'_, D>, rule: &Rule<'_, D>, size: f64) -> Vec<Seam<D>> {
