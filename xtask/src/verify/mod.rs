@@ -1,5 +1,6 @@
 //! `cargo xtask verify`: runs the benchmarks, checks every claim about them, and shows what accuracy costs.
 
+mod adaptive;
 mod claims;
 mod cost;
 mod csv;

@@ -2,7 +2,9 @@
 
 use super::options::Options;
 use super::study::Study;
-use super::{cost, dcpse, effects, freespace, gfdm, hard, natural, particle_difference, sharp, solvers};
+use super::{
+    adaptive, cost, dcpse, effects, freespace, gfdm, hard, natural, particle_difference, sharp, solvers,
+};
 
 /// A group of benchmarks with the claims about them.
 #[derive(Debug)]
@@ -14,7 +16,7 @@ pub(crate) struct Suite {
     run: fn(&Options) -> Study,
 }
 
-static SUITES: [Suite; 10] = [
+static SUITES: [Suite; 11] = [
     Suite { name: "gfdm", about: gfdm::ABOUT, cases: &gfdm::CASES, run: gfdm::run },
     Suite {
         name: "particle-difference",
@@ -27,6 +29,7 @@ static SUITES: [Suite; 10] = [
     Suite { name: "sharp", about: sharp::ABOUT, cases: &sharp::CASES, run: sharp::run },
     Suite { name: "hard", about: hard::ABOUT, cases: &hard::CASES, run: hard::run },
     Suite { name: "natural", about: natural::ABOUT, cases: &natural::CASES, run: natural::run },
+    Suite { name: "adaptive", about: adaptive::ABOUT, cases: &adaptive::CASES, run: adaptive::run_suite },
     Suite { name: "effects", about: effects::ABOUT, cases: &effects::CASES, run: effects::run },
     Suite { name: "solvers", about: solvers::ABOUT, cases: &solvers::CASES, run: solvers::run },
     Suite { name: "cost", about: cost::ABOUT, cases: &cost::CASES, run: cost::run },
