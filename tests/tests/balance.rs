@@ -193,3 +193,27 @@ fn smooth_solutions_keep_their_estimates() {
         assert_eq!(report.estimate.raised_by, None, "{method:?}: {report:?}");
     }
 }
+
+/// A void has no heat of its own: it is as warm as what is round it, whatever cells its walls cut.
+#[test]
+fn a_void_in_a_heated_plate_is_no_warmer_than_the_plate() {
+    for eta in [1e-3, 1e-6, 1e-10] {
+        for (method, time) in [
+            (MethodName::GfdmConservative, ""),
+            (MethodName::GfdmHybrid, ""),
+            (MethodName::GfdmConservative, "[time]\nend = 3\n"),
+        ] {
+            let text = format!(
+                "title = \"Void\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [1, 1] }}\n[points]\nspacing = 0.05\n\
+                 [[regions]]\nname = \"void\"\nbox = {{ min = [0.3, 0.3], max = [0.7, 0.7] }}\ndiffusivity = {eta:e}\n\
+                 [[regions]]\nname = \"plate\"\ndiffusivity = 1\nsource = 1\n\
+                 [[boundaries]]\nface = \"all\"\ndirichlet = 0\n{time}"
+            );
+            let report = solved(&text, method).expect("it is solved");
+            // An insulated square in the plate: 0.0397 at its corners, by fits with functions of corners.
+            assert!(report.extrema.max < 0.042, "{eta:e} {method:?} {time}: {:?}", report.extrema);
+            close(balance(&report).sources.total, 0.84, 1e-3);
+            assert!(balance(&report).relative < 1e-3, "{eta:e} {method:?} {time}: {:?}", report.balance);
+        }
+    }
+}

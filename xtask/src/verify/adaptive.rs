@@ -245,7 +245,11 @@ fn judge(case: &Case, parameter: f64, report: &Report) -> Option<[f64; 2]> {
         Judged::Probes => {
             let figures = || references::of(case.case, parameter);
             let rms = figures().filter(|f| f.quantity == Quantity::Rms).map(|f| f.value);
-            let scale = rms.fold(0.0, f64::max);
+            let values: Vec<f64> =
+                figures().filter(|f| f.quantity == Quantity::Value).map(|f| f.value).collect();
+            let of_values = (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+            // Where the table has no mean of u, that of its values stands for it.
+            let scale = rms.reduce(f64::max).unwrap_or(of_values);
             let squares = figures().filter(|f| f.quantity == Quantity::Value).map(|figure| {
                 let value = report.probes.iter().find(|p| p.at == figure.at)?.value?;
                 Some(((value - figure.value).abs() - figure.uncertainty).max(0.0).powi(2))

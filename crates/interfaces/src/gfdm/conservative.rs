@@ -15,6 +15,7 @@ use meshless_cells::{
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
+use super::source::Shared;
 use super::walls::{self, Flat, FlatInterfaces, Level, cuts};
 use crate::equation::Contact;
 use crate::{Condition, MethodError, Problem};
@@ -67,6 +68,7 @@ pub(super) struct CellBalance<'a, const D: usize> {
     flat: Flat<'a, D>,
     pub(super) interfaces: FlatInterfaces<'a, D>,
     index: CellList<'a, D>,
+    pub(super) shared: Shared,
     /// The interaction radius if it is the same at all nodes.
     uniform_radius: Option<f64>,
 }
@@ -104,6 +106,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             flat,
             interfaces,
             index,
+            shared: Shared::default(),
             uniform_radius: (least == most).then_some(most),
         })
     }

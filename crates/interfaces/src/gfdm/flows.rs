@@ -66,7 +66,7 @@ pub(super) fn cell_flows<const D: usize>(
     problem: &Problem<'_, D>,
     solution: &SystemSolution,
 ) -> Result<CellFlows<D>, MethodError> {
-    let balance = CellBalance::new(problem)?;
+    let balance = CellBalance::new(problem)?.sharing(|_| true)?;
     let known = problem.dirichlet();
     let cells = parallel::try_map_with(
         problem.cloud.len(),

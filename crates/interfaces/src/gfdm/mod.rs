@@ -211,7 +211,8 @@ fn cell_rows<const D: usize>(
     if !kinds.contains(&RowKind::Conservative) {
         return Ok(vec![None; kinds.len()]);
     }
-    let balance = CellBalance::new(problem)?;
+    let takes_part = |i: usize| matches!(kinds[i], RowKind::Conservative | RowKind::Dirichlet);
+    let balance = CellBalance::new(problem)?.sharing(takes_part)?;
     parallel::try_map_with(
         kinds.len(),
         || balance.scratch(),
