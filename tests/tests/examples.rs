@@ -23,7 +23,7 @@ const fn example(name: &'static str, spacing: &'static str, l2: f64) -> Example 
 /// has at this spacing; round-off where the solution is in the space of the polynomials.
 const EXAMPLES: [Example; 27] = [
     example("ball", "0.16", 1e-11),
-    Example { name: "channel", spacing: "0.1", l2: None },
+    Example { name: "channel", spacing: "0.05", l2: None },
     example("charge", "0.05", 1e-7),
     example("chip", "0.1", 1.6e-2),
     example("crack", "0.08", 5e-3),
