@@ -64,7 +64,7 @@ fn a_heated_cube_of_triangles_keeps_its_heat() {
     let cube = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(corner)).collect();
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(folder.path().join("cube.stl"), binary(&cube)).expect("writable");
-    let text = "title = \"Cube\"\ndimension = 3\n[domain]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\n[points]\nspacing = 0.15\n\
+    let text = "title = \"Cube\"\ndimension = 3\n[domain]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\n[points]\nspacing = 0.12\n\
                 [[regions]]\nname = \"cube\"\nstl = \"cube.stl\"\ndiffusivity = 10\nsource = 10\n\
                 [[regions]]\nname = \"out\"\ndiffusivity = 1\n[[boundaries]]\nface = \"all\"\ndirichlet = 0\n\
                 [[probes]]\nat = [0.1, 0.05, 0.2]\n[output]\nfluxes = true\n";
@@ -76,7 +76,7 @@ fn a_heated_cube_of_triangles_keeps_its_heat() {
     assert!((fluxes.interfaces[0].flux / -5.12 - 1.0).abs() < 2e-3, "{fluxes:?}");
     // By hp-FEM, `tests/references/space.py`.
     let error = (report.probes[0].value.expect("inside") / 0.465_188 - 1.0).abs();
-    assert!(error < 5e-2 && report.estimate.l2.is_some_and(|estimate| estimate > 0.3 * error), "{error}");
+    assert!(error < 3e-2 && report.estimate.l2.is_some_and(|estimate| estimate > 0.3 * error), "{error}");
 }
 
 #[test]
