@@ -6,15 +6,17 @@
 
 mod local;
 mod rims;
+mod solution;
 mod straightening;
 mod wedge;
 
 use meshless_geometry::{Domain, FaceId, Frame, PlanarPiece, PlanarPieces, RegionMap};
 
 use local::KnownWedges;
+pub(crate) use local::Local;
 pub use local::Obstacle;
-pub(crate) use local::{Local, LocalSolution, Monomial, Scales, value_and_gradient};
 pub(crate) use rims::rims;
+pub(crate) use solution::{LocalSolution, Monomial, Scales, value_and_gradient};
 
 use crate::{BoundaryData, Condition, InterfaceLaw, Material, Problem};
 
