@@ -174,6 +174,19 @@ pub fn disc_with_film(parameter: f64, spacing: f64, seed: u64) -> String {
     )
 }
 
+/// A square chip that makes 3.6 in all, in a plate whose sides are at 0, with a film round it of this resistance: a problem given by its data. Near its
+/// corners, `u ~ r^(2/3)` outside, hardly anything flows through the film.
+pub fn chip_behind_a_film(resistance: f64, spacing: f64, seed: u64) -> String {
+    format!(
+        "title = \"Heated chip behind a film\"\ndimension = 2\n[domain]\nbox = {{ min = [0, 0], max = [1, 1] }}\n\
+         [points]\nspacing = {spacing:?}\nlayout = \"irregular\"\nseed = {seed}\n\
+         [[regions]]\nname = \"chip\"\nbox = {{ min = [0.2, 0.2], max = [0.8, 0.8] }}\ndiffusivity = 10\nsource = 10\n\
+         [[regions]]\nname = \"plate\"\ndiffusivity = 1\n\
+         [[interfaces]]\nbetween = [\"chip\", \"plate\"]\nresistance = {resistance:e}\n\
+         [[boundaries]]\nface = \"all\"\ndirichlet = 0\n[[probes]]\nat = [0.5, 0.5]\n[[probes]]\nat = [0.1, 0.5]\n"
+    )
+}
+
 /// Conductivity of a square array of cylinders, conductivity ratio 10 and fraction 0.5, with a contact conductance h on their surfaces: `h a`
 /// and the effective conductivity, by the multipole series.
 pub const ARRAY_WITH_CONTACT: [(f64, f64); 2] = [(0.1, 0.412_370_237_471), (1.0, 0.953_467_055_150)];

@@ -2,7 +2,8 @@
 
 use meshless::report::Report;
 use meshless_tests::effects::{
-    ARRAY_WITH_CONTACT, Effects, NAFEMS_T3, array_with_contact, chosen, disc_with_film, nafems_t3, stream,
+    ARRAY_WITH_CONTACT, Effects, NAFEMS_T3, array_with_contact, chip_behind_a_film, chosen, disc_with_film,
+    nafems_t3, stream,
 };
 
 use super::claims::{Claims, short};
@@ -214,6 +215,8 @@ impl Chosen {
 
 /// Resistances of the film round the disc.
 const FILMS: [f64; 5] = [0.0, 0.1, 10.0, 1e6, 1e12];
+/// The same round a chip with corners.
+const CHIP_FILMS: [f64; 3] = [1e-3, 0.1, 10.0];
 /// Péclet numbers of a cell.
 const CELLS: [f64; 4] = [0.1, 1.0, 10.0, 1000.0];
 const STREAM_SPACING: f64 = 0.05;
@@ -222,7 +225,7 @@ fn key(case: &'static str, variant: Variant, jump: f64, level: usize) -> Key {
     Key { case, variant, jump, level, seed: 1 }
 }
 
-/// The films are level 0 of the closed forms, the array is level 1, the bar level 2.
+/// The films are level 0 of the closed forms, the array is level 1, the bar level 2, the chip level 3.
 fn closed(effort: Effort) -> Vec<Job> {
     let estimate = Extra { estimate: true, ..Extra::default() };
     let job = |problem, key, extra| Job { problem, key, extra };
@@ -233,6 +236,12 @@ fn closed(effort: Effort) -> Vec<Job> {
     if effort > Effort::Quick {
         for (h, _) in ARRAY_WITH_CONTACT {
             all.push(job(array_with_contact(h, 0.025, 1), key("closed-forms", AUTO, h, 1), estimate));
+        }
+        for variant in [AUTO, SHARP_4] {
+            for film in CHIP_FILMS {
+                let key = key("closed-forms", variant, film, 3);
+                all.push(job(chip_behind_a_film(film, 0.025, 1), key, estimate));
+            }
         }
         for variant in [SHARP_4, CONSERVATIVE] {
             all.push(job(nafems_t3(0.002), key("closed-forms", variant, 1.0, 2), Extra::default()));
@@ -281,6 +290,31 @@ fn check_closed(runner: &Runner<'_>, claims: &mut Claims) {
         claims.at_most("closed-forms", what, found.map(|f| f[0]), 5e-4);
         let what = format!("the same, h a = {h}: true error over its estimate");
         claims.at_most("closed-forms", what, found.map(|f| f[0] / f[1]), 10.0);
+    }
+    for film in CHIP_FILMS {
+        let [balances, fits] = [AUTO, SHARP_4].map(|variant| report(&key("closed-forms", variant, film, 3)));
+        for (name, found) in [("the plan's choice", balances), ("sharp", fits)] {
+            let what = format!(
+                "heated chip behind a film of {film:e}, {name}, h = 0.025: heat that leaves, off 3.6"
+            );
+            let leaves = |report: &Report| {
+                let entering = &report.balance.as_ref()?.into;
+                Some((entering.iter().map(|part| part.flux).sum::<f64>() + 3.6).abs() / 3.6)
+            };
+            claims.at_most("closed-forms", what, found.and_then(leaves), 1e-3);
+        }
+        let apart = balances.zip(fits).and_then(|(a, b)| {
+            let over = a
+                .probes
+                .iter()
+                .zip(&b.probes)
+                .map(|(p, q)| Some((p.value? - q.value?).abs() / (p.estimate? + q.estimate?)));
+            over.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(0.0, f64::max))
+        });
+        let what = format!(
+            "the same, {film:e}: how far values of the two are apart, over the sum of their estimates"
+        );
+        claims.at_most("closed-forms", what, apart, 1.0);
     }
     for (variant, bound) in [(SHARP_4, 1e-4), (CONSERVATIVE, 0.05)] {
         let found = report(&key("closed-forms", variant, 1.0, 2)).and_then(|r| r.probes.first()?.value);
@@ -336,7 +370,7 @@ pub(super) fn run(options: &Options) -> Study {
         (
             "closed-forms",
             "Closed forms",
-            "A disc behind a film, an array of cylinders with contact resistance, a bar whose end swings.",
+            "A disc and a chip behind a film, an array of cylinders with contact resistance, a bar whose end swings.",
         ),
         (
             "stream",

@@ -15,7 +15,7 @@ use meshless_cells::{
 use meshless_geometry::FaceId;
 use meshless_neighbors::CellList;
 
-use super::source::Shared;
+use super::source::{CellPart, Parts};
 use super::walls::{self, Flat, FlatInterfaces, Level, cuts};
 use crate::equation::Contact;
 use crate::{Condition, MethodError, Problem};
@@ -35,7 +35,7 @@ const LEAST_SEEN: f64 = 0.2;
 const ON_BOUNDARY: f64 = 1e-9;
 
 /// The balance of one cell.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct CellRow {
     /// Neighbours and transmissibilities `|Gamma_ij| eta_ij / d_ij`.
     pub(super) entries: Vec<(u32, f64)>,
@@ -44,6 +44,15 @@ pub(super) struct CellRow {
     pub(super) volume: f64,
     /// The integral of the capacity.
     pub(super) capacity: f64,
+}
+
+impl CellRow {
+    /// Adds what a part of a cell holds.
+    pub(super) fn add(&mut self, part: &CellPart) {
+        self.row_sum += part.reaction;
+        self.rhs += part.source;
+        self.capacity += part.capacity;
+    }
 }
 
 /// What a face says of the nodes on its sides: `q = conducts (u_i / K_i - u_j / K_j) - given` leaves by conduction.
@@ -68,7 +77,6 @@ pub(super) struct CellBalance<'a, const D: usize> {
     flat: Flat<'a, D>,
     pub(super) interfaces: FlatInterfaces<'a, D>,
     index: CellList<'a, D>,
-    pub(super) shared: Shared,
     /// The interaction radius if it is the same at all nodes.
     uniform_radius: Option<f64>,
 }
@@ -106,7 +114,6 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             flat,
             interfaces,
             index,
-            shared: Shared::default(),
             uniform_radius: (least == most).then_some(most),
         })
     }
@@ -191,17 +198,18 @@ impl<'a, const D: usize> CellBalance<'a, D> {
         candidates.extend(nodes.iter().map(|&j| (j, points[j as usize])));
     }
 
-    /// The balance over the cell of node i.
-    pub(super) fn row(&self, i: usize, scratch: &mut BalanceScratch<'_, D>) -> Result<CellRow, MethodError> {
+    /// The balance over the cell of node i, and what belongs in those of its neighbours; see [`CellBalance::parts`].
+    pub(super) fn row(
+        &self,
+        i: usize,
+        balances: &(dyn Fn(usize) -> bool + Sync),
+        scratch: &mut BalanceScratch<'_, D>,
+    ) -> Result<(CellRow, Vec<(u32, CellPart)>), MethodError> {
         let cell = self.cell(i, scratch)?;
-        let parts = self.parts(i, &cell, scratch)?;
-        let mut row = CellRow {
-            entries: Vec::with_capacity(cell.faces.len()),
-            row_sum: parts.iter().map(|part| part.reaction).sum(),
-            rhs: parts.iter().map(|part| part.source).sum(),
-            volume: cell.volume,
-            capacity: parts.iter().map(|part| part.capacity).sum(),
-        };
+        let Parts { kept, given } = self.parts(i, &cell, balances, scratch)?;
+        let entries = Vec::with_capacity(cell.faces.len());
+        let mut row = CellRow { entries, row_sum: 0.0, rhs: 0.0, volume: cell.volume, capacity: 0.0 };
+        kept.iter().for_each(|part| row.add(part));
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
         for face in cell.faces.iter().filter(|f| f.area > negligible) {
             match face.kind {
@@ -218,7 +226,7 @@ impl<'a, const D: usize> CellBalance<'a, D> {
             }
         }
         match row.entries.iter().map(|(_, t)| *t).chain([row.row_sum, row.rhs]).all(f64::is_finite) {
-            true => Ok(row),
+            true => Ok((row, given)),
             false => {
                 let x = self.problem.cloud.points()[i];
                 let what = format!(

@@ -7,6 +7,7 @@ use meshless_cells::FaceKind;
 use meshless_geometry::FaceId;
 
 use super::conservative::{BalanceScratch, CellBalance, CellRow, Crossing, NEGLIGIBLE_FACE};
+use super::source::{CellPart, Parts};
 use crate::{Condition, MethodError, Problem, SystemSolution, parallel};
 
 /// What enters through a piece of the boundary.
@@ -61,55 +62,84 @@ pub struct CellFlows<const D: usize> {
     pub parts: Vec<CellContent>,
 }
 
+/// What one cell has before its neighbours have given what belongs in its balance.
+struct Found<const D: usize> {
+    walls: Vec<CellWall<D>>,
+    seams: Vec<CellSeam>,
+    parts: Parts,
+    /// What leaves through all faces but those whose flux is the reaction of a prescribed value.
+    leaves: f64,
+    /// What the velocity carries away of that.
+    carried: f64,
+    /// Places among the walls through which the reaction enters.
+    held: Vec<usize>,
+}
+
 /// Those of all cells.
 pub(super) fn cell_flows<const D: usize>(
     problem: &Problem<'_, D>,
     solution: &SystemSolution,
 ) -> Result<CellFlows<D>, MethodError> {
-    let balance = CellBalance::new(problem)?.sharing(|_| true)?;
+    let balance = CellBalance::new(problem)?;
     let known = problem.dirichlet();
-    let cells = parallel::try_map_with(
+    let mut cells = parallel::try_map_with(
         problem.cloud.len(),
         || balance.scratch(),
-        |scratch, i| balance.flows(i, known[i].is_some(), solution, scratch),
+        |scratch, i| balance.flows(i, known[i].is_some(), &solution.u, scratch),
     )?;
+    for i in 0..cells.len() {
+        for (j, part) in std::mem::take(&mut cells[i].parts.given) {
+            cells[j as usize].parts.kept.push(part);
+        }
+    }
     let mut all = CellFlows::default();
-    for mut cell in cells {
-        all.walls.append(&mut cell.walls);
-        all.seams.append(&mut cell.seams);
-        all.parts.append(&mut cell.parts);
+    for (i, cell) in cells.into_iter().enumerate() {
+        let rate = solution.rates.as_ref().map_or(0.0, |rates| rates[i]);
+        cell.finish((solution.u[i], rate), &mut all);
     }
     Ok(all)
 }
 
-impl<const D: usize> CellBalance<'_, D> {
-    /// The fluxes of one cell.
-    fn flows(
-        &self,
-        i: usize,
-        prescribed: bool,
-        solution: &SystemSolution,
-        scratch: &mut BalanceScratch<'_, D>,
-    ) -> Result<CellFlows<D>, MethodError> {
-        let (problem, u) = (self.problem, &solution.u);
-        let cell = self.cell(i, scratch)?;
-        let rate = solution.rates.as_ref().map_or(0.0, |rates| rates[i]);
-        let content = |part: super::source::CellPart| CellContent {
+impl<const D: usize> Found<D> {
+    /// Adds the flows of a cell whose parts are complete, of a node with this value and rate of change.
+    fn finish(self, (u, rate): (f64, f64), all: &mut CellFlows<D>) {
+        let Self { mut walls, mut seams, parts, leaves, carried, held } = self;
+        let content = |part: &CellPart| CellContent {
             region: part.region,
             cell: part.cell,
             arises: part.source,
             stored: rate * part.capacity,
-            taken: [part.reaction * u[i], 0.0],
+            taken: [part.reaction * u, 0.0],
         };
-        let parts: Vec<CellContent> = self.parts(i, &cell, scratch)?.into_iter().map(content).collect();
-        let mut lacks: f64 = parts.iter().map(|part| part.stored + part.taken[0] - part.arises).sum();
-        let mut carried = 0.0;
-        let mut flows = CellFlows { parts, ..CellFlows::default() };
-        // Pieces of the boundary through which the reaction enters.
-        let mut held: Vec<usize> = Vec::new();
+        let mut contents: Vec<CellContent> = parts.kept.iter().map(content).collect();
+        let gone: f64 = contents.iter().map(|part| part.stored + part.taken[0] - part.arises).sum();
+        let area: f64 = held.iter().map(|&k| walls[k].area).sum();
+        held.iter().for_each(|&k| walls[k].flux = (leaves + gone) * walls[k].area / area);
+        if let Some(own) = contents.iter_mut().find(|part| part.region == part.cell) {
+            own.taken[1] = carried;
+        }
+        all.walls.append(&mut walls);
+        all.seams.append(&mut seams);
+        all.parts.append(&mut contents);
+    }
+}
+
+impl<const D: usize> CellBalance<'_, D> {
+    /// What leaves the cell of node i, and what it holds.
+    fn flows(
+        &self,
+        i: usize,
+        prescribed: bool,
+        u: &[f64],
+        scratch: &mut BalanceScratch<'_, D>,
+    ) -> Result<Found<D>, MethodError> {
+        let problem = self.problem;
+        let cell = self.cell(i, scratch)?;
+        let parts = self.parts(i, &cell, &|_| true, scratch)?;
+        let (walls, seams, held) = (Vec::new(), Vec::new(), Vec::new());
+        let mut found = Found { walls, seams, parts, leaves: 0.0, carried: 0.0, held };
         let negligible = NEGLIGIBLE_FACE * cell.faces.iter().fold(0.0_f64, |a, f| a.max(f.area));
         for face in cell.faces.iter().filter(|f| f.area > negligible) {
-            let mut row = CellRow { entries: Vec::new(), row_sum: 0.0, rhs: 0.0, volume: 0.0, capacity: 0.0 };
             match face.kind {
                 FaceKind::Neighbor(j) => {
                     let Crossing { conducts, partition, given, in_row } = self.crossing(i, j, face);
@@ -117,36 +147,31 @@ impl<const D: usize> CellBalance<'_, D> {
                         true => (u[i] - u[j as usize]) / partition[0],
                         false => u[i] / partition[0] - u[j as usize] / partition[1],
                     };
-                    let leaves = in_row[0] * drop - in_row[1];
-                    let flux = conducts * drop - given;
-                    lacks += leaves;
-                    carried += leaves - flux;
+                    let (leaves, flux) = (in_row[0] * drop - in_row[1], conducts * drop - given);
+                    found.leaves += leaves;
+                    found.carried += leaves - flux;
                     let between = [i, j as usize].map(|k| problem.labels[k]);
                     if between[0] != between[1] {
-                        flows.seams.push(CellSeam { between, flux, area: face.area });
+                        found.seams.push(CellSeam { between, flux, area: face.area });
                     }
                 }
                 FaceKind::Boundary(id) => {
                     let (face_id, at) = (FaceId(id), face.centroid);
                     let condition = problem.boundary.condition(face_id, &at);
                     let flux = if prescribed && matches!(condition, Some(Condition::Dirichlet(_))) {
-                        held.push(flows.walls.len());
+                        found.held.push(found.walls.len());
                         0.0
                     } else {
+                        let mut row = CellRow::default();
                         self.boundary_face(i, face_id, face, &mut row)?;
                         row.rhs - row.row_sum * u[i]
                     };
-                    lacks -= flux;
+                    found.leaves -= flux;
                     let region = problem.labels[i];
-                    flows.walls.push(CellWall { face: face_id, at, region, flux, area: face.area });
+                    found.walls.push(CellWall { face: face_id, at, region, flux, area: face.area });
                 }
             }
         }
-        let area: f64 = held.iter().map(|&k| flows.walls[k].area).sum();
-        held.iter().for_each(|&k| flows.walls[k].flux = lacks * flows.walls[k].area / area);
-        if let Some(own) = flows.parts.iter_mut().find(|part| part.region == part.cell) {
-            own.taken[1] = carried;
-        }
-        Ok(flows)
+        Ok(found)
     }
 }

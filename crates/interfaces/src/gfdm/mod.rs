@@ -160,8 +160,8 @@ impl Parts {
             Some(row) => row.capacity,
             None => strong_measure(problem, i) * problem.capacity(i),
         };
-        let capacities =
-            problem.has_capacities().then(|| (0..self.kinds.len()).map(capacity).collect::<Vec<_>>());
+        // That of a cell is what its balance has of it and of its neighbours', as its source is.
+        let capacities = Some((0..self.kinds.len()).map(capacity).collect());
         let Self { kinds, counts, stencil_seconds, .. } = self;
         let rows = Discretization::of_nodes((rows, rhs), volumes, kinds, counts, stencil_seconds);
         Ok(Discretization { capacities, ..rows })
@@ -212,13 +212,25 @@ fn cell_rows<const D: usize>(
         return Ok(vec![None; kinds.len()]);
     }
     let takes_part = |i: usize| matches!(kinds[i], RowKind::Conservative | RowKind::Dirichlet);
-    let balance = CellBalance::new(problem)?.sharing(takes_part)?;
-    parallel::try_map_with(
+    let balance = CellBalance::new(problem)?;
+    let made = parallel::try_map_with(
         kinds.len(),
         || balance.scratch(),
         |scratch, i| match kinds[i] {
-            RowKind::Conservative => balance.row(i, scratch).map(Some),
+            RowKind::Conservative => balance.row(i, &takes_part, scratch).map(Some),
             _ => Ok(None),
         },
-    )
+    )?;
+    let (mut rows, mut given) = (Vec::with_capacity(kinds.len()), Vec::new());
+    for made in made {
+        rows.push(made.map(|(row, mut beyond)| {
+            given.append(&mut beyond);
+            row
+        }));
+    }
+    // What prescribed values receive has no row to go to.
+    for (j, part) in given {
+        rows[j as usize].iter_mut().for_each(|row: &mut CellRow| row.add(&part));
+    }
+    Ok(rows)
 }

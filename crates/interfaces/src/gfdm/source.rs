@@ -2,13 +2,11 @@
 //! of its region. What is beyond the interface is in the balances of the neighbours there: were it in that of the node, an insulating region
 //! in a heated one would be as hot as the heat in its outermost cells makes it (u of a void of 1e-6 was 329 where it is 0.04).
 
-use std::collections::BTreeMap;
-
 use meshless_cells::Cell;
 use meshless_geometry::Aabb;
 
 use super::conservative::{BalanceScratch, CellBalance};
-use crate::{MethodError, parallel};
+use crate::MethodError;
 
 /// Lines through a cell in each direction across them, by dimension. The heat of a square chip is right to 2e-5 at h = 0.05 by that, with 50
 /// cut cells, and to 2e-4 at h = 0.1; by the sources at the nodes alone it is 6e-3 and 8e-2 off.
@@ -40,13 +38,12 @@ pub(super) struct CellPart {
     pub(super) reaction: f64,
 }
 
-/// Which parts of cells that interfaces cut are in whose balance.
+/// What the cell of a node holds: for its own balance, and for those of neighbours beyond an interface.
 #[derive(Debug, Default)]
-pub(super) struct Shared {
-    /// What stays in the balances of the nodes whose cells are cut.
-    kept: BTreeMap<u32, Vec<CellPart>>,
-    /// What nodes have of their neighbours' cells.
-    received: BTreeMap<u32, Vec<CellPart>>,
+pub(super) struct Parts {
+    pub(super) kept: Vec<CellPart>,
+    /// Neighbours, and what they have of the cell.
+    pub(super) given: Vec<(u32, CellPart)>,
 }
 
 impl CellPart {
@@ -138,62 +135,30 @@ impl<const D: usize> CellBalance<'_, D> {
         Ok(if is_known { found } else { vec![whole] })
     }
 
-    /// What the balance of node i holds: the part of its cell that is in its own region, and what its neighbours have of that.
+    /// The parts of the cell of node i by the balances that have them: what is beyond an interface is in those of its neighbours there that
+    /// `balances` names, by the areas of the faces in between; where there is none, it stays.
     pub(super) fn parts(
         &self,
         i: usize,
         cell: &Cell<D>,
+        balances: &(dyn Fn(usize) -> bool + Sync),
         scratch: &mut BalanceScratch<'_, D>,
-    ) -> Result<Vec<CellPart>, MethodError> {
-        let own = match self.shared.kept.get(&(i as u32)) {
-            Some(kept) => kept.clone(),
-            None => self.cut(i, cell, scratch)?,
-        };
-        let received = self.shared.received.get(&(i as u32)).into_iter().flatten();
-        Ok(own.into_iter().chain(received.copied()).collect())
-    }
-
-    /// Hands what cells have beyond an interface to their neighbours there that `balances` names, by the areas of the faces in between;
-    /// where there is none, it stays.
-    pub(super) fn sharing(mut self, balances: impl Fn(usize) -> bool + Sync) -> Result<Self, MethodError> {
-        let nodes = self.problem.labels.len();
-        let near = |i: usize| self.problem.supports.lists.of(i).iter().any(|&j| self.changes(i, j as usize));
-        let cells = parallel::try_map_with(
-            nodes,
-            || self.scratch(),
-            |scratch, i| {
-                if !balances(i) || !near(i) {
-                    return Ok(None);
-                }
-                let cell = self.cell(i, scratch)?;
-                let parts = self.cut(i, &cell, scratch)?;
-                let own = self.problem.labels[i];
-                if parts.iter().all(|part| part.region == own) {
-                    return Ok(None);
-                }
-                let (mut kept, mut given): (Vec<CellPart>, Vec<(u32, CellPart)>) = (Vec::new(), Vec::new());
-                for part in parts {
-                    let beyond = cell.neighbors().filter(|(j, _)| {
-                        let j = *j as usize;
-                        part.region != own && self.problem.labels[j] == part.region && balances(j)
-                    });
-                    let faces: Vec<(u32, f64)> = beyond.map(|(j, face)| (j, face.area)).collect();
-                    let area: f64 = faces.iter().map(|face| face.1).sum();
-                    match area > 0.0 {
-                        true => given.extend(faces.iter().map(|(j, face)| (*j, part.share(face / area)))),
-                        false => kept.push(part),
-                    }
-                }
-                Ok::<_, MethodError>(Some((kept, given)))
-            },
-        )?;
-        let mut shared = Shared::default();
-        for (i, (kept, given)) in (0_u32..).zip(cells).filter_map(|(i, cell)| Some((i, cell?))) {
-            shared.kept.insert(i, kept);
-            given.into_iter().for_each(|(j, part)| shared.received.entry(j).or_default().push(part));
+    ) -> Result<Parts, MethodError> {
+        let labels = self.problem.labels;
+        let mut parts = Parts::default();
+        for part in self.cut(i, cell, scratch)? {
+            let beyond = cell.neighbors().filter(|(j, _)| {
+                let j = *j as usize;
+                part.region != labels[i] && labels[j] == part.region && balances(j)
+            });
+            let faces: Vec<(u32, f64)> = beyond.map(|(j, face)| (j, face.area)).collect();
+            let area: f64 = faces.iter().map(|face| face.1).sum();
+            match area > 0.0 {
+                true => parts.given.extend(faces.iter().map(|(j, face)| (*j, part.share(face / area)))),
+                false => parts.kept.push(part),
+            }
         }
-        self.shared = shared;
-        Ok(self)
+        Ok(parts)
     }
 
     /// Whether no interface that is not flat can be within `reach` of a point.

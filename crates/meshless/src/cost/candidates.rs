@@ -65,6 +65,7 @@ fn all(scene: &Scene, plan: &Plan) -> Vec<Candidate> {
     };
     let orders = if scene.time.is_some() { &SHARP_IN_TIME[..] } else { SHARP[scene.dimension - 1] };
     all.extend(orders.iter().map(|&order| of(Sharp, Some(order))));
+    all.retain(|candidate| plan.is_known_to(candidate.name));
     all
 }
 

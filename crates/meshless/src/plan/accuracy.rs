@@ -91,7 +91,7 @@ impl AccuracyPlan {
         if jumps && (high || scene.output.fluxes) {
             return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");
         }
-        if jumps && !knows::all(MethodName::ParticleDifference, survey) {
+        if jumps && !knows::all(MethodName::ParticleDifference, &survey.effects) {
             return choice(MethodName::Sharp, None, "high order on both sides of interfaces, also in time");
         }
         if jumps {

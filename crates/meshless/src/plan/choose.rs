@@ -101,6 +101,7 @@ pub(super) fn method_plan(scene: &Scene, survey: &Survey) -> Result<MethodPlan, 
     let scene = &scene.with_order(order);
     method::check(name, scene)?;
     knows::check(name, scene, survey)?;
+    knows::check_partition(scene, survey)?;
     Ok(described(name, why, scene, survey))
 }
 

@@ -170,6 +170,7 @@ impl Plan {
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let survey = effects::Survey::of(scene)?;
         if scene.free_space.is_some() {
+            knows::check(MethodName::FreeSpace, scene, &survey)?;
             return free_space::plan(scene, survey);
         }
         let method = choose::method_plan(scene, &survey)?;
@@ -202,6 +203,11 @@ impl Plan {
             skipped,
             predicted,
         })
+    }
+
+    /// Whether a method knows all effects of the scene.
+    pub(crate) fn is_known_to(&self, name: MethodName) -> bool {
+        knows::all(name, &self.effects)
     }
 
     /// Whether a stage will run.
